@@ -1,0 +1,74 @@
+# Kernels are compiled once per instruction set.
+#
+#   nephroid_add_kernels(TARGET FILE...)
+#
+# compiles each FILE for plain floats and for every instruction set in NEPHROID_ISAS_BUILT and links all of it into TARGET.
+# A FILE instantiates kernels for the instruction set it is being compiled for:
+#
+#   #include <pipeline/kernels.hpp>
+#   template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, MyVertexShader, NoGeometryShader, MyPixelShader>;
+#
+# What is compiled for AVX-512 must never be called on a processor without it. Templates and inline functions shared with
+# the rest of the program (glm::vec<3, float>'s operators, std::max<float>) have one name whatever they were compiled for,
+# and a linker keeps whichever copy it meets first. So each instruction set's objects are linked into one, and every
+# symbol in it but the kernels' own is made local.
+
+if(NEPHROID_ISAS STREQUAL "auto")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(NEPHROID_ISAS_BUILT sse42 avx2 avx512)
+  elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    set(NEPHROID_ISAS_BUILT neon)
+  else()
+    set(NEPHROID_ISAS_BUILT)
+  endif()
+elseif(NEPHROID_ISAS STREQUAL "none")
+  set(NEPHROID_ISAS_BUILT)
+else()
+  set(NEPHROID_ISAS_BUILT ${NEPHROID_ISAS})
+endif()
+
+set(NEPHROID_ISA_NAME_scalar Scalar)
+set(NEPHROID_ISA_NAME_sse42 Sse42)
+set(NEPHROID_ISA_NAME_avx2 Avx2)
+set(NEPHROID_ISA_NAME_avx512 Avx512)
+set(NEPHROID_ISA_NAME_neon Neon)
+set(NEPHROID_ISA_FLAGS_sse42 -msse4.2)
+set(NEPHROID_ISA_FLAGS_avx2 -mavx2 -mf16c -mtune=haswell)
+set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mtune=skylake-avx512)
+# GCC 12 takes the deliberately undefined operand inside its own AVX-512 intrinsics for a mistake of ours.
+set(NEPHROID_ISA_FLAGS_GNU_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+
+# A target with the kernels' compile flags and its own usage requirements, for one instruction set.
+function(_nephroid_kernel_objects target isa out)
+  set(objects ${target}_${isa})
+  add_library(${objects} OBJECT ${ARGN})
+  target_compile_features(${objects} PRIVATE cxx_std_20)
+  target_compile_definitions(${objects} PRIVATE NEPHROID_KERNEL_ISA=Isa::${NEPHROID_ISA_NAME_${isa}}
+    $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
+  target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+  target_compile_options(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${NEPHROID_ISA_FLAGS_${isa}}
+    $<$<CXX_COMPILER_ID:GNU>:${NEPHROID_ISA_FLAGS_GNU_${isa}}>)
+  target_link_libraries(${objects} PRIVATE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
+  set_target_properties(${objects} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  set(${out} ${objects} PARENT_SCOPE)
+endfunction()
+
+function(nephroid_add_kernels target)
+  list(TRANSFORM ARGN REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1" OUTPUT_VARIABLE files)
+  foreach(isa IN ITEMS scalar LISTS NEPHROID_ISAS_BUILT)
+    _nephroid_kernel_objects(${target} ${isa} objects ${files})
+    if(NEPHROID_ISOLATE_KERNELS AND NEPHROID_ISA_FLAGS_${isa})
+      set(isolated ${CMAKE_CURRENT_BINARY_DIR}/${target}_${isa}_kernels.o)
+      add_custom_command(
+        OUTPUT ${isolated}
+        COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${isolated} $<TARGET_OBJECTS:${objects}>
+        COMMAND ${CMAKE_OBJCOPY} --wildcard "--keep-global-symbol=_ZN8nephroid*Kernels*5tableEv" ${isolated}
+        DEPENDS $<TARGET_OBJECTS:${objects}>
+        COMMAND_EXPAND_LISTS VERBATIM COMMENT "Isolating ${isa} kernels of ${target}")
+      set_source_files_properties(${isolated} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+      target_sources(${target} PRIVATE ${isolated})
+    else()
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,109 @@
+// Geometry stage.
+//   in:  a batch's primitives, as indices into the vertex stage's structs
+//   out: per stream, the emitted vertices and the primitives they form, in the order of the input primitives and, within
+//        one, of emission
+//
+// The functor runs once for a lane's worth of primitives and emits under masks; afterwards the emissions are put into
+// order: the places are a running count over primitives, then over emissions.
+#pragma once
+#include "pipeline/vertex_stage.hpp"
+
+namespace nephroid {
+
+// Takes the strips apart that the lanes of one run emitted. `first[l]` is the place of lane l's first vertex.
+template <int N>
+inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const std::uint32_t* cut, int emissions, const std::int32_t* first,
+                             const std::uint32_t* primitive_id, int active, PrimitiveArrays& out) {
+    const int corners = vertices_per_primitive(topology);
+    for (int l = 0; l < active; ++l) {
+        std::uint32_t vertex = static_cast<std::uint32_t>(first[l]), strip = vertex;
+        for (int e = 0; e < emissions; ++e) {
+            if (!(mask[e] >> l & 1u)) {
+                if (cut[e] >> l & 1u) strip = vertex;
+                continue;
+            }
+            const std::uint32_t in_strip = vertex - strip + 1;
+            if (in_strip >= static_cast<std::uint32_t>(corners)) {
+                const int p = out.count++;
+                const std::uint32_t start = vertex + 1 - static_cast<std::uint32_t>(corners);
+                // Every second triangle of a strip turns the other way round; its leading vertex stays the first.
+                const bool odd = corners == 3 && (start - strip) % 2 == 1;
+                out.corner[0][p] = start;
+                if (corners >= 2) out.corner[1][p] = start + (odd ? 2 : 1);
+                if (corners == 3) out.corner[2][p] = start + (odd ? 1 : 2);
+                out.primitive_id[p] = primitive_id[l];
+            }
+            ++vertex;
+            if (cut[e] >> l & 1u) strip = vertex;
+        }
+    }
+}
+
+template <class F, class V, int MaxVertices>
+inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>& emitted, const std::uint32_t* primitive_id, int active,
+                             GeometryStreamWork& stream) {
+    constexpr int lanes = lanes_of<F>;
+    const std::uint32_t active_bits = active >= 32 ? ~0u : (1u << active) - 1u;
+    std::uint32_t mask[MaxVertices];
+    std::int32_t first[lanes], place[lanes];
+    for (int e = 0; e < emitted.count; ++e) mask[e] = emitted.mask[e] & active_bits;
+    for (int l = 0; l < lanes; ++l) {
+        first[l] = stream.vertex_count;
+        for (int e = 0; e < emitted.count; ++e) stream.vertex_count += mask[e] >> l & 1u;
+        place[l] = first[l];
+    }
+    for (int e = 0; e < emitted.count; ++e) {
+        if (!mask[e]) continue;
+        std::int32_t offset[lanes];
+        for (int l = 0; l < lanes; ++l) offset[l] = (mask[e] >> l & 1u ? place[l] : stream.junk_vertex) * component_count<V>;
+        const V& v = emitted.vertex[e];
+        if (stream.out.records) store_records(stream.out.records, offset, v);
+        for (std::uint32_t bits = mask[e]; bits; bits &= bits - 1) {
+            const int l = __builtin_ctz(bits), at = place[l]++;
+            if constexpr (requires { v.position; }) {
+                if (stream.out.position[0])
+                    for (int c = 0; c < 4; ++c) stream.out.position[c][at] = lane(v.position[c], l);
+            }
+            if constexpr (requires { v.point_size; }) {
+                if (stream.out.point_size) stream.out.point_size[at] = lane(v.point_size, l);
+            }
+            if constexpr (requires { v.layer; }) {
+                if (stream.out.layer) stream.out.layer[at] = lane(v.layer, l);
+            }
+            if constexpr (requires { v.level; }) {
+                if (stream.out.level) stream.out.level[at] = lane(v.level, l);
+            }
+        }
+    }
+    assemble_emitted<lanes>(topology, mask, emitted.cut, emitted.count, first, primitive_id, active, stream.primitives);
+}
+
+template <class F, class GS>
+void shade_primitives(GeometryWork& work) {
+    using Types = GeometryTypes<GS, F>;
+    using In = typename Types::Vertex;
+    using Out = typename Types::Out;
+    constexpr int lanes = lanes_of<F>, streams = Types::stream_count, max_vertices = GS::max_vertices;
+    const GS& shader = *static_cast<const GS*>(work.shader);
+
+    [&]<int... s>(std::integer_sequence<int, s...>) {
+        std::tuple<Emissions<typename Out::template Vertex<s>, max_vertices>...> emissions;
+        for (int i = 0; i < work.in.count; i += lanes) {
+            const int active = work.in.count - i < lanes ? work.in.count - i : lanes;
+            typename Types::Input in;
+            for (std::size_t c = 0; c < in.size(); ++c) in[c] = gather_records<In>(work.records, load_lanes<LaneInt<F>>(work.in.corner[c] + i));
+            ((std::get<s>(emissions).count = 0), ...);
+            Out out(std::get<s>(emissions)...);
+            if constexpr (Types::takes_ids) {
+                const PrimitiveIds<F> ids{load_lanes<LaneUint<F>>(work.in.primitive_id + i), load_lanes<LaneUint<F>>(work.instance_ids + i)};
+                shader.template operator()<F>(in, out, ids);
+            } else {
+                shader.template operator()<F>(in, out);
+            }
+            (append_emissions<F>(GS::output, std::get<s>(emissions), work.in.primitive_id + i, active, work.stream[s]), ...);
+        }
+    }
+    (std::make_integer_sequence<int, streams>{});
+}
+
+}  // namespace nephroid

@@ -1,0 +1,103 @@
+// What the draw loop, compiled once, hands to the kernels, compiled once per instruction set and shader: whole batches.
+//
+// Arrays that kernels read or write lane-wise are padded: they have room for, and where they are inputs valid values in,
+// a multiple of `lane_padding` elements.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "pipeline/lanes/isa.hpp"
+#include "pipeline/state.hpp"
+#include "pipeline/statistics.hpp"
+
+namespace nephroid {
+
+inline constexpr int lane_padding = 16;
+constexpr int padded(int count) { return (count + lane_padding - 1) / lane_padding * lane_padding; }
+
+// Vertices after the last stage before the clipper. `records` holds whole vertex structs one after another, as stream
+// output writes them; what the fixed-function stages need lies beside them, one array per value.
+struct VertexArrays {
+    std::byte* records = nullptr;  // null: nobody will read them
+    float* position[4] = {};       // clip space x, y, z, w; null where nothing is rasterized
+    float* point_size = nullptr;   // null where the vertex struct has none
+    std::int32_t* layer = nullptr;
+    std::int32_t* level = nullptr;
+};
+
+// One run of the vertex stage.
+struct VertexWork {
+    const void* shader;
+    const std::byte* vertex_buffer;     // null where the shader takes no vertex
+    const std::uint32_t* vertex_ids;    // [padded(count)]
+    const std::uint32_t* instance_ids;  // [padded(count)]
+    int count;
+    VertexArrays out;  // room for padded(count)
+};
+
+// A list of primitives: indices into a VertexArrays, one array per corner; the first corner's vertex is the leading one.
+struct PrimitiveArrays {
+    std::uint32_t* corner[3] = {};
+    std::uint32_t* primitive_id = nullptr;  // of the input assembler
+    int count = 0;
+};
+
+struct GeometryStreamWork {
+    VertexArrays out;            // room for max_vertices vertices per primitive, and one
+    std::int32_t junk_vertex = 0;  // the last place, which takes what is not wanted
+    PrimitiveArrays primitives;  // filled as the stream's topology says, strips taken apart
+    int vertex_count = 0;
+};
+
+// One run of the geometry stage over all primitives of a batch.
+struct GeometryWork {
+    const void* shader;
+    const std::byte* records;   // of the vertex stage
+    PrimitiveArrays in;         // arrays valid up to padded(count)
+    const std::uint32_t* instance_ids;  // per primitive, [padded(count)]
+    GeometryStreamWork stream[max_streams];
+};
+
+// ---- fragments
+
+// Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second
+// and third corner, perspective-correct; l1, l2 are the ones linear on the screen.
+template <int N>
+struct alignas(64) FragmentGroup {
+    std::int32_t x[N], y[N];
+    float b1[N], b2[N];
+    float l1[N], l2[N];
+    float z[N], w[N];
+    float point_x[N], point_y[N];  // point coordinate
+    std::uint32_t mask;            // lanes that are fragments
+    // One primitive for all lanes (`uniform`: index 0 of each), or one per lane.
+    bool uniform;
+    bool rows_of_four;  // lanes are rows of four neighbours from (x[0], y[0]) on, row after row
+    std::uint32_t corner[3][N];  // records to interpolate between
+    std::uint32_t leading[N];    // record that flat values come from
+    std::uint32_t primitive_id[N];
+    std::uint32_t front_facing[N];  // 0 or 1
+    std::int32_t layer, level;      // of the target, the same for all
+};
+
+// How many groups are shaded at a time: enough to hide the calls, few enough to stay in the first-level cache.
+inline constexpr int groups_per_flush = 8;
+
+// One run of the pixel stage. Results of group g begin at results + g * result_stride; in them the colour of target t,
+// channel c is at [(t * 4 + c) * lanes], the depth, where written, after the last colour.
+struct PixelWork {
+    const void* shader;
+    const std::byte* records;
+    void* groups;  // FragmentGroup<lanes>[count]; a shader that discards takes lanes out of their masks
+    int count;
+    float* results;
+    int result_stride;  // in floats
+};
+
+struct ProgramKernelTable {
+    void (*shade_vertices)(const VertexWork&);
+    void (*shade_primitives)(GeometryWork&);    // null without a geometry shader
+    void (*shade_pixels)(const PixelWork&);     // null without a pixel shader
+};
+
+}  // namespace nephroid

@@ -1,0 +1,34 @@
+// Owned, aligned memory that tells of failure instead of throwing.
+#pragma once
+#include <cstddef>
+#include <cstdlib>
+#include <utility>
+
+namespace nephroid {
+
+// At least 64-byte aligned; from 4 MiB on aligned to huge pages, and the system is asked to use them, since a picture's
+// rows lie pages apart. The content is undefined. `allocate` frees what was held before.
+class HostMemory {
+public:
+    HostMemory() = default;
+    HostMemory(HostMemory&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+    HostMemory& operator=(HostMemory&& other) noexcept {
+        std::swap(data_, other.data_);
+        std::swap(size_, other.size_);
+        return *this;
+    }
+    ~HostMemory() { std::free(data_); }
+
+    [[nodiscard]] bool allocate(std::size_t bytes);
+    // Grows to at least `bytes`; the content is lost where it grows. Never shrinks.
+    [[nodiscard]] bool reserve(std::size_t bytes) { return bytes <= size_ || allocate(bytes); }
+
+    std::byte* data() const { return data_; }
+    std::size_t size() const { return size_; }
+
+private:
+    std::byte* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+}  // namespace nephroid

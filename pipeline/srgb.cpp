@@ -1,0 +1,34 @@
+#include "pipeline/srgb.hpp"
+
+namespace nephroid {
+
+namespace {
+
+// x^(1/5) for 0 < x < 2 by Newton's method, from above: monotone until it no longer falls.
+constexpr double fifth_root(double x) {
+    double y = x < 1 ? 1.0 : x;
+    for (;;) {
+        const double next = y - (y * y * y * y * y - x) / (5 * y * y * y * y);
+        if (!(next < y)) return y;
+        y = next;
+    }
+}
+// v is on the encoded side, 0 ... 1: ((v + 0.055) / 1.055)^2.4 above the straight part.
+constexpr double decode(double v) {
+    if (v <= 0.04045) return v / 12.92;
+    const double x = (v + 0.055) / 1.055, x2 = x * x;
+    return x2 * fifth_root(x2);
+}
+
+constexpr SrgbTables make_tables() {
+    SrgbTables t{};
+    for (int k = 0; k < 256; ++k) t.linear[k] = static_cast<float>(decode(k / 255.0));
+    for (int k = 0; k < 255; ++k) t.threshold[k] = static_cast<float>(decode((k + 0.5) / 255.0));
+    return t;
+}
+
+}  // namespace
+
+constinit const SrgbTables srgb_tables = make_tables();
+
+}  // namespace nephroid

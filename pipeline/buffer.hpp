@@ -38,8 +38,7 @@ public:
     Buffer() = default;
     // Zeros. Empty if there is no memory for it.
     explicit Buffer(std::int64_t count, const char* name = "buffer") : name_(name) {
-        if (count > 0 && count <= (std::int64_t{1} << 31) && memory_.allocate(static_cast<std::size_t>(count) * sizeof(T) + overread)) {
-            std::memset(memory_.data(), 0, memory_.size());
+        if (count > 0 && count <= (std::int64_t{1} << 31) && memory_.allocate_zeroed(static_cast<std::size_t>(count) * sizeof(T) + overread)) {
             data_ = reinterpret_cast<T*>(memory_.data());
             count_ = count;
         }

@@ -6,7 +6,7 @@
 // to clipper.cpp and set_up.cpp. For the rest this computes what set_up.cpp computes, operation by operation, in 32 bits.
 #pragma once
 #include "pipeline/edges.hpp"
-#include "pipeline/lanes.hpp"
+#include "pipeline/weight_planes.hpp"
 
 namespace nephroid {
 
@@ -168,12 +168,13 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
         if (!drawn_bits) continue;
 
         // Barycentric planes and depth.
-        const F per_pixel = F(static_cast<float>(subpixels)) / to_float(select(drawn, select(clockwise, area, -area), I(1)));
-        const F b1_dx = to_float(cy - ay) * per_pixel, b1_dy = to_float(ax - cx) * per_pixel, b2_dx = to_float(ay - by) * per_pixel, b2_dy = to_float(bx - ax) * per_pixel;
+        const WeightPlanes<F> planes =
+            weight_planes<F>(x[0], y[0], select(clockwise, x[1], x[2]), select(clockwise, y[1], y[2]), select(clockwise, x[2], x[1]), select(clockwise, y[2], y[1]), ax, ay, bx, by, cx,
+                             cy, to_float(select(drawn, select(clockwise, area, -area), I(1))));
         const F depth1 = z1 - z0, depth2 = z2 - z0;
         F depth0 = z0;
         if (state.depth_bias != 0 || state.slope_scaled_depth_bias != 0) {
-            const F slope_x = b1_dx * depth1 + b2_dx * depth2, slope_y = b1_dy * depth1 + b2_dy * depth2;
+            const F slope_x = planes.b1_dx * depth1 + planes.b2_dx * depth2, slope_y = planes.b1_dy * depth1 + planes.b2_dy * depth2;
             alignas(64) float bias[lanes];
             for (int l = 0; l < lanes; ++l) bias[l] = depth_bias(state, lane(z0, l), lane(z1, l), lane(z2, l), lane(slope_x, l), lane(slope_y, l));
             depth0 = z0 + load_lanes<F>(bias);
@@ -186,8 +187,8 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
         float* words = reinterpret_cast<float*>(records);
         const auto w = [](I value) { return as_word<F>(value); };
         store_rows4(words, offset, w(ax), w(bx), w(cx), w(ay));
-        store_rows4(words + 4, offset, w(by), w(cy), to_float(ax) * (1.0f / subpixels) - 0.5f, to_float(ay) * (1.0f / subpixels) - 0.5f);
-        store_rows4(words + 8, offset, b1_dx, b1_dy, b2_dx, b2_dy);
+        store_rows4(words + 4, offset, w(by), w(cy), planes.origin_x, planes.origin_y);
+        store_rows4(words + 8, offset, planes.b1_dx, planes.b1_dy, planes.b2_dx, planes.b2_dy);
         store_rows4(words + 12, offset, depth0, depth1, depth2, inverse_w[0]);
         store_rows4(words + 16, offset, w1, w2, w(v0), w(v1));
         store_rows4(words + 20, offset, w(v2), w(v0), w(load_lanes<I>(batch.primitives.primitive_id + first)), w(target_index));

@@ -5,7 +5,7 @@
 
 #include "pipeline/draw_context.hpp"
 #include "pipeline/edges.hpp"
-#include "pipeline/lanes/scalar.hpp"
+#include "pipeline/weight_planes.hpp"
 
 namespace nephroid {
 
@@ -43,13 +43,14 @@ void set_up_triangle(const DrawContext& draw, Batch& batch, const ScreenVertex v
         r.inverse_w[c] = v[order[c]].inverse_w;
         r.corner[c] = vertices[order[c]];
     }
-    const float per_pixel = static_cast<float>(subpixels) / static_cast<float>(clockwise ? area : -area);
-    r.origin_x = static_cast<float>(r.x[0]) * (1.0f / subpixels) - 0.5f;
-    r.origin_y = static_cast<float>(r.y[0]) * (1.0f / subpixels) - 0.5f;
-    r.b1_dx = static_cast<float>(r.y[2] - r.y[0]) * per_pixel;
-    r.b1_dy = static_cast<float>(r.x[0] - r.x[2]) * per_pixel;
-    r.b2_dx = static_cast<float>(r.y[0] - r.y[1]) * per_pixel;
-    r.b2_dy = static_cast<float>(r.x[1] - r.x[0]) * per_pixel;
+    const WeightPlanes<float> planes = weight_planes<float>(v[0].x, v[0].y, v[second].x, v[second].y, v[third].x, v[third].y, r.x[0], r.y[0], r.x[1], r.y[1], r.x[2], r.y[2],
+                                                            static_cast<float>(clockwise ? area : -area));
+    r.origin_x = planes.origin_x;
+    r.origin_y = planes.origin_y;
+    r.b1_dx = planes.b1_dx;
+    r.b1_dy = planes.b1_dy;
+    r.b2_dx = planes.b2_dx;
+    r.b2_dy = planes.b2_dy;
     const float z0 = v[0].z, z1 = v[second].z, z2 = v[third].z;
     r.z1 = z1 - z0;
     r.z2 = z2 - z0;

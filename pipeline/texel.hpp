@@ -1,6 +1,6 @@
 // Texels: between memory in a texture's format and four floats.
 //
-// Storing rounds to nearest (floats: ties to even), saturates, takes NaN to 0 in the byte formats and to 0x7fc00000 (half: 0x7e00) in the
+// Storing rounds to nearest, ties to even, saturates, takes NaN to 0 in the byte formats and to 0x7fc00000 (half: 0x7e00) in the
 // float ones. Missing channels read as 0, missing alpha as 1.
 #pragma once
 #include <cstddef>
@@ -26,7 +26,7 @@ inline Color4 canonical(Color4 v) {
 }
 inline float canonical(float v) { return v != v ? canonical_nan : v; }
 
-inline std::uint8_t unorm8(float v) { return static_cast<std::uint8_t>(to_int_in_range(min(max(0.0f, v), 1.0f) * 255.0f + 0.5f)); }
+inline std::uint8_t unorm8(float v) { return static_cast<std::uint8_t>(to_int_in_range(round_even(min(max(0.0f, v), 1.0f) * 255.0f))); }
 
 template <Format format>
 inline Color4 load_texel(const std::byte* at) {

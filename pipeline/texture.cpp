@@ -70,11 +70,10 @@ Texture::Texture(const TextureDesc& desc) : desc_(desc), faults_(check(desc)) {
         total += (slice * level.slices * texel_bytes + 63) / 64 * 64;
     }
     constexpr std::int64_t overread = 64;  // a vector load of the last texels may reach past them
-    if (!texels_.allocate(static_cast<std::size_t>(total + overread)) || !layout_memory_.allocate(sizeof(TextureLayout))) {
+    if (!texels_.allocate_zeroed(static_cast<std::size_t>(total + overread)) || !layout_memory_.allocate(sizeof(TextureLayout))) {
         faults_.add(desc.name, "does not fit into memory: bytes needed", total, 0);
         return;
     }
-    std::memset(texels_.data(), 0, texels_.size());
     for (int l = 0; l < layout.level_count; ++l) layout.level[l].data = texels_.data() + offset[l];
     new (layout_memory_.data()) TextureLayout(layout);
 }

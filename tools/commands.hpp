@@ -5,5 +5,6 @@
 namespace nephroid {
 
 void add_bench_command(CLI::App& app);
+void add_render_command(CLI::App& app);
 
 }  // namespace nephroid

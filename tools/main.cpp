@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
     CLI::App app("A software GPU with caustics, the same bits everywhere", "nephroid");
     app.require_subcommand(1);
+    nephroid::add_render_command(app);
     nephroid::add_bench_command(app);
     try {
         app.parse(argc, argv);

@@ -13,7 +13,7 @@ template <int N> inline bool all(Mask<N> m) { return mask_bits(m) == all_lanes<N
 template <int N> inline bool none(Mask<N> m) { return mask_bits(m) == 0; }
 template <int N> inline Mask<N>& operator&=(Mask<N>& a, Mask<N> b) { return a = a & b; }
 template <int N> inline Mask<N>& operator|=(Mask<N>& a, Mask<N> b) { return a = a | b; }
-template <int N> inline Mask<N> select(Mask<N> m, Mask<N> a, Mask<N> b) { return (m & a) | (!m & b); }
+template <int N> inline Mask<N> select(Mask<N> m, Mask<N> a, Mask<N> b) { return (m & a) | ((!m) & b); }
 
 // ---- comparisons; a scalar on either side is broadcast
 template <class T, int N> inline Mask<N> operator>(Lanes<T, N> a, Lanes<T, N> b) { return b < a; }

@@ -1,0 +1,37 @@
+// exp and exp2. Bounds and special values: pipeline/math.hpp.
+#pragma once
+#include "pipeline/math/exponent.hpp"
+
+namespace nephroid::lane_math {
+
+// 2^f for |f| <= 1/2 (and a rounding error more).
+template <LaneFloat F>
+inline F exp2_of_fraction(F f) {
+    // f / 2 is exact, and the other term small, so that one rounding on their sum's scale is all.
+    return 1.0f + (0.5f * f + f * polynomial(f, 0x1.8b90c2p-3f, 0x1.ebfbdcp-3f, 0x1.c6af0ep-5f, 0x1.3b2d8ep-7f, 0x1.5f311p-10f, 0x1.41c6eap-13f));
+}
+
+// About 30 operations.
+template <LaneFloat F>
+inline F exp(F x) {
+    // Beyond these bounds the result is 0 or infinity anyway. NaN passes through min and max.
+    const F bounded = min(max(x, -104.0f), 89.0f);
+    // exp(x) = 2^k exp(r) with r = x - k ln 2. The first part of ln 2 has so few bits that its product with k is exact; the
+    // second part's product is kept apart until the end, so that only one addition rounds on r's scale.
+    const auto [k, exponent] = round_to_int(bounded * 0x1.715476p0f);
+    const F r_hi = bounded - k * 0x1.62e4p-1f;
+    const F k_lo = k * 0x1.7f7d1cp-20f;
+    const F r = r_hi - k_lo;
+    const F tail = r * r * polynomial(r, 0x1.fffffcp-2f, 0x1.555492p-3f, 0x1.5558bp-5f, 0x1.12398ep-7f, 0x1.6a4d74p-10f);
+    return scale_near_one(1.0f + (r_hi + (tail - k_lo)), exponent);
+}
+
+// About 27 operations.
+template <LaneFloat F>
+inline F exp2(F x) {
+    const F bounded = min(max(x, -151.0f), 128.0f);
+    const auto [k, exponent] = round_to_int(bounded);
+    return scale_near_one(exp2_of_fraction(bounded - k), exponent);
+}
+
+}  // namespace nephroid::lane_math

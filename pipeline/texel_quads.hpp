@@ -1,0 +1,151 @@
+// Quads: for N lanes that have four channels each, four registers in which every 128-bit part holds one lane's channels.
+// Part i of register j is lane 4 i + j. Loads bring texels so, a filter can work on them so, and one transposition at the
+// end makes a register per channel of them.
+#pragma once
+#include <cstring>
+
+#include "pipeline/lanes.hpp"
+
+#if defined(__AVX512F__) || (defined(__AVX2__) && defined(__F16C__))
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace nephroid {
+
+namespace quads {
+
+// Within each 128-bit part: elements a, b of x, then elements c, d of y.
+template <int a, int b, int c, int d, int N, int... Part>
+[[gnu::always_inline]] inline FloatLanes<N> shuffle_parts(FloatLanes<N> x, FloatLanes<N> y, std::integer_sequence<int, Part...>) {
+    constexpr int element[4] = {a, b, N + c, N + d};
+    return FloatLanes<N>(__builtin_shufflevector(x.v, y.v, (Part / 4 * 4 + element[Part % 4])...));
+}
+template <int a, int b, int c, int d, int N>
+[[gnu::always_inline]] inline FloatLanes<N> shuffle(FloatLanes<N> x, FloatLanes<N> y) {
+    return shuffle_parts<a, b, c, d>(x, y, std::make_integer_sequence<int, N>{});
+}
+
+}  // namespace quads
+
+// q[j] = the value of lane 4 i + j in all of part i.
+template <int N>
+[[gnu::always_inline]] inline void spread_quads(FloatLanes<N> x, FloatLanes<N> q[4]) {
+    q[0] = quads::shuffle<0, 0, 0, 0>(x, x);
+    q[1] = quads::shuffle<1, 1, 1, 1>(x, x);
+    q[2] = quads::shuffle<2, 2, 2, 2>(x, x);
+    q[3] = quads::shuffle<3, 3, 3, 3>(x, x);
+}
+
+// The same four values in every part.
+template <class F>
+[[gnu::always_inline]] inline F repeat_quad(const float rgba[4]) {
+    typename F::Native r;
+    for (int k = 0; k < F::size; ++k) r[k] = rgba[k % 4];
+    return F(r);
+}
+
+// Quads to one register per channel, lanes in order; or back.
+template <int N>
+[[gnu::always_inline]] inline void transpose_quads(FloatLanes<N> q[4]) {
+    const FloatLanes<N> xy01 = quads::shuffle<0, 1, 0, 1>(q[0], q[1]), zw01 = quads::shuffle<2, 3, 2, 3>(q[0], q[1]);
+    const FloatLanes<N> xy23 = quads::shuffle<0, 1, 0, 1>(q[2], q[3]), zw23 = quads::shuffle<2, 3, 2, 3>(q[2], q[3]);
+    q[0] = quads::shuffle<0, 2, 0, 2>(xy01, xy23);
+    q[1] = quads::shuffle<1, 3, 1, 3>(xy01, xy23);
+    q[2] = quads::shuffle<0, 2, 0, 2>(zw01, zw23);
+    q[3] = quads::shuffle<1, 3, 1, 3>(zw01, zw23);
+}
+
+namespace quads {
+
+// Where each lane reads: base + index. The indices, none negative, are taken out of their register two at a time, as taking
+// out is what costs.
+template <int N>
+struct LaneAddresses {
+    std::uint64_t pair[N / 2];
+    const float* base;
+
+    [[gnu::always_inline]] LaneAddresses(const float* b, IntLanes<N> index) : base(b) {
+        const auto pairs = (typename NativeVector<std::uint64_t, N / 2>::type)index.v;
+        for (int k = 0; k < N / 2; ++k) pair[k] = pairs[k];
+    }
+    [[gnu::always_inline]] const float* operator[](int lane) const {
+        const std::uint64_t two = pair[lane / 2];
+        return base + (lane % 2 == 0 ? two & 0xffffffffu : two >> 32);
+    }
+};
+
+// Floats from..from + 3 of every lane's address, for lanes of one register.
+template <int N>
+[[gnu::always_inline]] inline FloatLanes<N> load_quad(const LaneAddresses<N>& at, int j, int from) {
+    using Quad = NativeVector<float, 4>::type;
+    const auto quad = [&](int lane) __attribute__((always_inline)) {
+        Quad r;
+        std::memcpy(&r, at[lane] + from, sizeof r);
+        return r;
+    };
+    if constexpr (N == 4) {
+        return FloatLanes<N>(quad(j));
+    } else {
+        const auto low = __builtin_shufflevector(quad(j), quad(j + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+        if constexpr (N == 8) {
+            return FloatLanes<N>(low);
+        } else {
+            const auto high = __builtin_shufflevector(quad(j + 8), quad(j + 12), 0, 1, 2, 3, 4, 5, 6, 7);
+            return FloatLanes<N>(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+        }
+    }
+}
+
+}  // namespace quads
+
+// base[index] ... base[index + 3] of every lane.
+template <int N>
+[[gnu::always_inline]] inline void load_quads(const float* base, IntLanes<N> index, FloatLanes<N> q[4]) {
+    const quads::LaneAddresses<N> at(base, index);
+    for (int j = 0; j < 4; ++j) q[j] = quads::load_quad(at, j, 0);
+}
+// The same in `a`, and the four behind in `b`.
+template <int N>
+[[gnu::always_inline]] inline void load_quad_pairs(const float* base, IntLanes<N> index, FloatLanes<N> a[4], FloatLanes<N> b[4]) {
+    const quads::LaneAddresses<N> at(base, index);
+    for (int j = 0; j < 4; ++j) {
+        a[j] = quads::load_quad(at, j, 0);
+        b[j] = quads::load_quad(at, j, 4);
+    }
+}
+// The eight binary16 at base[index] of every lane: the first four in `a`, the others in `b`.
+template <int N>
+[[gnu::always_inline]] inline void load_half_quad_pairs(const float* base, IntLanes<N> index, FloatLanes<N> a[4], FloatLanes<N> b[4]) {
+    const quads::LaneAddresses<N> at(base, index);
+    for (int j = 0; j < 4; ++j) {
+#if defined(__AVX512F__)
+        const auto load = [&](int low, int high) __attribute__((always_inline)) {
+            return _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(at[low]))),
+                                           _mm_loadu_si128(reinterpret_cast<const __m128i*>(at[high])), 1);
+        };
+        const __m256i even = load(j, j + 8), odd = load(j + 4, j + 12);
+        a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm512_cvtph_ps(_mm256_unpacklo_epi64(even, odd)));
+        b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm512_cvtph_ps(_mm256_unpackhi_epi64(even, odd)));
+#elif defined(__AVX2__) && defined(__F16C__)
+        const auto load = [&](int lane) __attribute__((always_inline)) { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(at[lane])); };
+        const __m128i even = load(j), odd = load(j + 4);
+        a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm256_cvtph_ps(_mm_unpacklo_epi64(even, odd)));
+        b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm256_cvtph_ps(_mm_unpackhi_epi64(even, odd)));
+#elif defined(__aarch64__)
+        const uint16x8_t halves = vld1q_u16(reinterpret_cast<const std::uint16_t*>(at[j]));
+        a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_low_u16(halves))));
+        b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_high_u16(halves))));
+#else
+        std::uint16_t halves[8];
+        std::memcpy(halves, at[j], sizeof halves);
+        typename UintLanes<N>::Native low, high;
+        for (int k = 0; k < 4; ++k) low[k] = halves[k], high[k] = halves[k + 4];
+        a[j] = half_to_float(UintLanes<N>(low));
+        b[j] = half_to_float(UintLanes<N>(high));
+#endif
+    }
+}
+
+}  // namespace nephroid

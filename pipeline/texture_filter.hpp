@@ -1,0 +1,144 @@
+// Filtering within a mip level, and across levels. What texture views are made of; the formulas are in sampler.hpp.
+//
+// The functions are inlined into the shader: with a constexpr sampler nothing of the choices below is left, and with a
+// level that is one for all lanes a level's size and pitches are scalars.
+#pragma once
+#include <bit>
+#include <type_traits>
+
+#include "pipeline/texel_lanes.hpp"
+#include "pipeline/texture.hpp"
+#include "pipeline/texture_address.hpp"
+
+namespace nephroid {
+
+// ---- one level
+
+// The taps of one row, linear along x. `row` is the row's first word; with `border` set, taps outside the level or in a
+// row outside have the border's value.
+template <Format format, class F>
+[[gnu::always_inline]] inline TexelLanes<format, F> filter_row(const Sampler& sampler, const TextureLevel& level, LaneUint<F> row,
+                                                               const LinearTaps<F>& x, bool border, LaneMask<F> row_inside) {
+    TexelLanes<format, F> a, b;
+    load_texel_pairs<format, F>(level.data, row, x.first, x.second, sampler.address_u == AddressMode::Wrap, a, b);
+    if (border) {
+        const TexelLanes<format, F> outside = broadcast_texel<format, F>(sampler.border);
+        a = select_texel<format, F>(row_inside & x.first_inside, a, outside);
+        b = select_texel<format, F>(row_inside & x.second_inside, b, outside);
+    }
+    return lerp(a, b, spread_over_channels<format, F>(x.weight));
+}
+
+// A slice of a level, filtered along x and y. `slice` is its first word.
+template <Format format, class F>
+[[gnu::always_inline]] inline TexelLanes<format, F> filter_slice(const Sampler& sampler, const TextureLevel& level, LaneUint<F> slice,
+                                                                 const vec2<F>& uv) {
+    const bool border = sampler.address_u == AddressMode::Border || sampler.address_v == AddressMode::Border;
+    const unsigned pitch = static_cast<unsigned>(level.row_pitch) * texel_words<format>;
+    if (sampler.filter == Filter::Nearest) {
+        const NearestTap<F> x = nearest_tap(sampler.address_u, uv.x, level.width), y = nearest_tap(sampler.address_v, uv.y, level.height);
+        const TexelLanes<format, F> texel = load_texels<format, F>(level.data, slice + y.texel * pitch + x.texel * texel_words<format>);
+        return border ? select_texel<format, F>(x.inside & y.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel;
+    }
+    const LinearTaps<F> x = linear_taps(sampler.address_u, uv.x, level.width), y = linear_taps(sampler.address_v, uv.y, level.height);
+    const TexelLanes<format, F> first = filter_row<format, F>(sampler, level, slice + y.first * pitch, x, border, y.first_inside);
+    const TexelLanes<format, F> second = filter_row<format, F>(sampler, level, slice + y.second * pitch, x, border, y.second_inside);
+    return lerp(first, second, spread_over_channels<format, F>(y.weight));
+}
+
+// A level of a 3D texture, filtered along x, y and z.
+template <Format format, class F>
+[[gnu::always_inline]] inline TexelLanes<format, F> filter_volume(const Sampler& sampler, const TextureLevel& level, const vec3<F>& uvw) {
+    const bool border = sampler.address_u == AddressMode::Border || sampler.address_v == AddressMode::Border || sampler.address_w == AddressMode::Border;
+    const unsigned pitch = static_cast<unsigned>(level.row_pitch) * texel_words<format>;
+    const unsigned slice_pitch = static_cast<unsigned>(level.slice_pitch) * texel_words<format>;
+    if (sampler.filter == Filter::Nearest) {
+        const NearestTap<F> x = nearest_tap(sampler.address_u, uvw.x, level.width), y = nearest_tap(sampler.address_v, uvw.y, level.height);
+        const NearestTap<F> z = nearest_tap(sampler.address_w, uvw.z, level.slices);
+        const LaneUint<F> word = z.texel * slice_pitch + y.texel * pitch + x.texel * texel_words<format>;
+        const TexelLanes<format, F> texel = load_texels<format, F>(level.data, word);
+        return border ? select_texel<format, F>(x.inside & y.inside & z.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel;
+    }
+    const LinearTaps<F> x = linear_taps(sampler.address_u, uvw.x, level.width), y = linear_taps(sampler.address_v, uvw.y, level.height);
+    const LinearTaps<F> z = linear_taps(sampler.address_w, uvw.z, level.slices);
+    const LaneUint<F> y0 = y.first * pitch, y1 = y.second * pitch, z0 = z.first * slice_pitch, z1 = z.second * slice_pitch;
+    const auto row = [&](LaneUint<F> word, LaneMask<F> inside) __attribute__((always_inline)) {
+        return filter_row<format, F>(sampler, level, word, x, border, inside);
+    };
+    const TexelLanes<format, F> y_weight = spread_over_channels<format, F>(y.weight);
+    const TexelLanes<format, F> front = lerp(row(z0 + y0, z.first_inside & y.first_inside), row(z0 + y1, z.first_inside & y.second_inside), y_weight);
+    const TexelLanes<format, F> back = lerp(row(z1 + y0, z.second_inside & y.first_inside), row(z1 + y1, z.second_inside & y.second_inside), y_weight);
+    return lerp(front, back, spread_over_channels<format, F>(z.weight));
+}
+
+// ---- levels
+
+// A level as a caller may give it: an int or a float for all lanes, or lanes of either.
+template <class F, class Level>
+inline auto plain_level(Level level) {
+    if constexpr (std::is_integral_v<Level>) return static_cast<int>(level);
+    else if constexpr (std::is_floating_point_v<Level>) return static_cast<float>(level);
+    else return level;
+}
+
+// Calls read(level) with each level that occurs among the lanes, as an int, and puts the results together.
+template <class F, class Level, class Read>
+[[gnu::always_inline]] inline vec4<F> for_each_level(Level level, const Read& read) {
+    if constexpr (std::is_same_v<Level, int>) {
+        return read(level);
+    } else {
+        vec4<F> result(F(0.0f));
+        for (std::uint32_t left = mask_bits(LaneMask<F>(true)); left != 0;) {
+            const int l = lane(level, std::countr_zero(left));
+            const LaneMask<F> here = level == l;
+            result = select(here, read(l), result);
+            left &= ~mask_bits(here);
+        }
+        return result;
+    }
+}
+
+// Samples the levels that `level` asks for: read(l) samples level l, 0 <= l <= last, in all lanes.
+template <Format format, class F, class Level, class Read>
+[[gnu::always_inline]] inline vec4<F> filter_levels(Filter filter, Level level, int last, const Read& read) {
+    if constexpr (std::is_same_v<Level, int> || std::is_same_v<Level, LaneInt<F>>) {
+        return for_each_level<F>(min(max(level, Level(0)), Level(last)), [&](int l) __attribute__((always_inline)) { return to_rgba(read(l)); });
+    } else {
+        // An F, or one float for all lanes. max() is written so that NaN gives 0.
+        const Level clamped = min(max(Level(0.0f), level), Level(static_cast<float>(last)));
+        const bool two = filter == Filter::Trilinear;
+        const Level low = floor(two ? clamped : clamped + 0.5f);
+        const TexelLanes<format, F> weight = spread_over_channels<format, F>(F(clamped - low));
+        return for_each_level<F>(to_int_in_range(low), [&](int l) __attribute__((always_inline)) {
+            // A loop rather than two calls: what it calls is large, and inlined once.
+            TexelLanes<format, F> result = {};
+            for (int k = 0; k < (two ? 2 : 1); ++k) {
+                const TexelLanes<format, F> texel = read(min(l + k, last));
+                result = k == 0 ? texel : lerp(result, texel, weight);
+            }
+            return to_rgba(result);
+        });
+    }
+}
+
+// ---- fetches
+
+// A texel by its numbers; zeros where there is none, missing channels included.
+template <Format format, class F, class Level>
+[[gnu::always_inline]] inline vec4<F> fetch_texel(const TextureLayout& layout, LaneInt<F> x, LaneInt<F> y, LaneInt<F> slice, Level level) {
+    using U = LaneUint<F>;
+    return for_each_level<F>(level, [&](int l) __attribute__((always_inline)) {
+        // Numbers are compared as unsigned ones: what is below 0 then lies above every size. A level that is not there is
+        // one of width 0.
+        const bool exists = l >= 0 && l < layout.level_count;
+        const TextureLevel& from = layout.level[exists ? l : 0];
+        const U column = as_uint(x), row = as_uint(y), plane = as_uint(slice);
+        const U width(exists ? static_cast<unsigned>(from.width) : 0u), height(static_cast<unsigned>(from.height)), planes(static_cast<unsigned>(from.slices));
+        const LaneMask<F> inside = (column < width) & (row < height) & (plane < planes);
+        const U number = plane * static_cast<unsigned>(from.slice_pitch) + row * static_cast<unsigned>(from.row_pitch) + column;
+        const TexelLanes<format, F> texel = load_texels<format, F>(from.data, select(inside, number * texel_words<format>, U(0u)));
+        return select(inside, to_rgba(texel), vec4<F>(F(0.0f)));
+    });
+}
+
+}  // namespace nephroid

@@ -1,0 +1,133 @@
+#include "stages/caustic_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace nephroid::stages {
+
+namespace {
+
+constexpr int band_count = 16, bins = 4096;
+constexpr double kept = 0.99;  // of the flux, along each axis
+
+// Window coordinates reach to infinity: squeezed into -1..1.
+double squeeze(double x, double scale) { return x / (scale + std::abs(x)); }
+double unsqueeze(double y, double scale) { return y * scale / (1 - std::abs(y)); }
+int bin_of(double squeezed) { return std::clamp(static_cast<int>((squeezed * 0.5 + 0.5) * bins), 0, bins - 1); }
+double bin_edge(int bin) { return std::clamp(static_cast<double>(bin) / bins * 2 - 1, -0.9999, 0.9999); }
+
+struct Photon {
+    glm::vec3 position;
+    double flux;
+    bool landed;
+};
+Photon photon_at(const float* position, const float* flux) {
+    return {{position[0], position[1], position[2]}, static_cast<double>(flux[0]) + flux[1] + flux[2], position[3] > 0};
+}
+
+}  // namespace
+
+struct CausticViewFitter::Band {
+    double flux = 0, sum[3] = {0, 0, 0};  // flux-weighted directions or positions
+    std::array<std::uint64_t, bins> across, down;
+    std::uint64_t behind = 0;  // what the view cannot hold at all
+    bool outside = false;
+};
+
+CausticViewFitter::CausticViewFitter() : bands_(band_count) {}
+CausticViewFitter::~CausticViewFitter() = default;
+
+CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture& positions, const Texture& fluxes, const Light& light, const glm::vec3& scene_centre, float reach) {
+    const bool parallel = light.kind == LightKind::Directional;
+    const int width = positions.width(), height = positions.height();
+    const auto for_photons = [&](auto&& visit) {
+        executor.for_each(band_count, [&](int b, int) {
+            const int first = height * b / band_count, last = height * (b + 1) / band_count;
+            for (int y = first; y < last; ++y) {
+                const float *p = reinterpret_cast<const float*>(positions.row(y)), *f = reinterpret_cast<const float*>(fluxes.row(y));
+                for (int x = 0; x < width; ++x, p += 4, f += 4) {
+                    const Photon photon = photon_at(p, f);
+                    if (photon.landed) visit(bands_[b], photon);
+                }
+            }
+        });
+    };
+
+    // The axis: towards the middle of the flux.
+    for (Band& b : bands_) b.flux = b.sum[0] = b.sum[1] = b.sum[2] = 0, b.across.fill(0), b.down.fill(0), b.behind = 0, b.outside = false;
+    for_photons([&](Band& b, const Photon& photon) {
+        glm::vec3 d = photon.position - light.position;
+        if (!parallel) d = glm::normalize(d);
+        b.flux += photon.flux;
+        for (int k = 0; k < 3; ++k) b.sum[k] += photon.flux * d[k];
+    });
+    double flux = 0, sum[3] = {0, 0, 0};
+    for (const Band& b : bands_) {
+        flux += b.flux;
+        for (int k = 0; k < 3; ++k) sum[k] += b.sum[k];
+    }
+    Fit fit;
+    if (!(flux > 0)) return fit;
+    fit.empty = false;
+    if (parallel) {
+        fit.view = make_view(scene_centre, light.direction);
+        fit.view.perspective = false;
+        fit.view.near_plane = -reach;
+        fit.view.far_plane = reach;
+    } else {
+        const glm::vec3 mean(static_cast<float>(sum[0] / flux), static_cast<float>(sum[1] / flux), static_cast<float>(sum[2] / flux));
+        fit.view = make_view(light.position, glm::dot(mean, mean) > 1e-6f ? mean : light.direction);
+        fit.view.near_plane = reach * 1e-4f;
+    }
+
+    // The window: what holds all but the tails of the flux along each axis.
+    const double scale = parallel ? reach * 0.25 : 1.0, count_scale = 0x1p40 / flux;
+    const View& view = fit.view;
+    const auto window = [&](const Photon& photon, double& x, double& y) {
+        const glm::vec3 d = photon.position - view.origin;
+        const double z = glm::dot(d, view.forward);
+        if (!parallel && z <= 0.02 * glm::length(d)) return false;
+        const double divisor = parallel ? 1.0 : z;
+        x = glm::dot(d, view.right) / divisor;
+        y = glm::dot(d, view.up) / divisor;
+        return true;
+    };
+    for_photons([&](Band& b, const Photon& photon) {
+        const std::uint64_t count = static_cast<std::uint64_t>(photon.flux * count_scale);
+        double x, y;
+        if (!window(photon, x, y)) {
+            b.behind += count;
+            return;
+        }
+        b.across[bin_of(squeeze(x, scale))] += count;
+        b.down[bin_of(squeeze(y, scale))] += count;
+    });
+    const auto range = [&](auto member) {
+        std::array<std::uint64_t, bins> all{};
+        std::uint64_t total = 0;
+        for (const Band& b : bands_)
+            for (int k = 0; k < bins; ++k) all[k] += (b.*member)[k], total += (b.*member)[k];
+        const std::uint64_t tail = static_cast<std::uint64_t>(static_cast<double>(total) * (1 - kept) * 0.5);
+        int low = 0, high = bins - 1;
+        for (std::uint64_t s = all[0]; low < high && s <= tail; s += all[++low]) {}
+        for (std::uint64_t s = all[high]; high > low && s <= tail; s += all[--high]) {}
+        return std::pair{unsqueeze(bin_edge(low), scale), unsqueeze(bin_edge(high + 1), scale)};
+    };
+    const auto [left, right] = range(&Band::across);
+    const auto [bottom, top] = range(&Band::down);
+    constexpr double margin = 1.04;
+    const double least = parallel ? reach * 1e-5 : 1e-5;
+    fit.view.centre = {static_cast<float>((left + right) * 0.5), static_cast<float>((bottom + top) * 0.5)};
+    fit.view.half = {static_cast<float>(std::max((right - left) * 0.5 * margin, least)), static_cast<float>(std::max((top - bottom) * 0.5 * margin, least))};
+
+    for_photons([&](Band& b, const Photon& photon) {
+        const glm::vec4 c = fit.view.clip<float>(photon.position);
+        constexpr float inside = 0.95f;  // splats have a size
+        if (!(c.w > 0) || std::abs(c.x) > c.w * inside || std::abs(c.y) > c.w * inside) b.outside = true;
+    });
+    for (const Band& b : bands_) fit.outside = fit.outside || b.outside;
+    return fit;
+}
+
+}  // namespace nephroid::stages

@@ -1,0 +1,33 @@
+// Fits a caustic map's view to where its photons landed.
+#pragma once
+#include <vector>
+
+#include "pipeline/executor.hpp"
+#include "pipeline/texture.hpp"
+#include "stages/view.hpp"
+#include "stages/world.hpp"
+
+namespace nephroid::stages {
+
+class CausticViewFitter {
+public:
+    CausticViewFitter();
+    ~CausticViewFitter();
+
+    struct Fit {
+        bool empty = true;   // no photon landed
+        View view;           // holds nearly all of the flux
+        bool outside = false;  // some photons lie outside the view
+    };
+    // Photons: [side][side] of landing place and 1, or 0 where there is none; fluxes, W. The view looks from the light; a
+    // directional light's is parallel. `reach` is a length that the scene does not exceed. The same photons give the same
+    // view for every number of threads.
+    Fit fit(Executor& executor, const Texture& positions, const Texture& fluxes, const Light& light, const glm::vec3& scene_centre, float reach);
+
+private:
+    // What one band of rows adds up to. Histograms count in whole numbers: their order of addition does not matter.
+    struct Band;
+    std::vector<Band> bands_;
+};
+
+}  // namespace nephroid::stages

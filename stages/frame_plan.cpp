@@ -1,0 +1,146 @@
+#include "stages/frame_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nephroid::stages {
+
+namespace {
+
+bool specular(const World& world, const Mesh& mesh) { return world.material_of(mesh).kind != SurfaceKind::Lambert; }
+
+// Whether any of a spot's cone can touch a box: its bounding sphere against the cone.
+bool lights_box(const Light& light, const glm::vec3& low, const glm::vec3& high) {
+    if (light.kind != LightKind::Spot) return true;
+    const glm::vec3 centre = (low + high) * 0.5f, to_centre = centre - light.position;
+    const float radius = glm::length(high - low) * 0.5f, distance = glm::length(to_centre);
+    if (distance <= radius) return true;
+    const float cosine = glm::dot(to_centre, light.direction) / distance;
+    // The angle between axis and centre against the sum of the cone's and the sphere's; by cosines, while that sum is
+    // less than half a turn.
+    const float sine_radius = radius / distance, cosine_radius = std::sqrt(1 - sine_radius * sine_radius);
+    if (light.cos_outer <= -cosine_radius) return true;
+    const float sine_outer = std::sqrt(std::max(0.0f, 1 - light.cos_outer * light.cos_outer));
+    return cosine >= light.cos_outer * cosine_radius - sine_outer * sine_radius;
+}
+
+class Planner {
+public:
+    Planner(const World& world, const Settings& settings) : world_(world), settings_(settings) {}
+
+    FramePlan make() {
+        bool receivers = false, casters = false;
+        for (const Mesh& m : world_.meshes) (specular(world_, m) ? casters : receivers) = true;
+        plan_eye();
+        for (int l = 0; l < static_cast<int>(world_.lights.size()); ++l) plan_light(l, receivers, casters);
+        plan_emission();
+        if (settings_.samples_side > 1) add({.kind = PassKind::Downsample, .name = "downsample", .why = "a pixel is the mean of " + std::to_string(settings_.samples_side * settings_.samples_side) + " samples", .reads = {"samples"}, .writes = {"picture"}});
+        return std::move(plan_);
+    }
+
+private:
+    void add(Pass pass) { plan_.passes.push_back(std::move(pass)); }
+    void leave_out(std::string what, std::string why) { plan_.left_out.push_back({std::move(what), std::move(why)}); }
+
+    void plan_eye() {
+        add({.kind = PassKind::SurfacePoints, .name = "surface points", .why = "what the eye sees first", .writes = {"points", "eye depth"}});
+        std::vector<int> seen;
+        for (int m = 0; m < static_cast<int>(world_.meshes.size()); ++m)
+            if (specular(world_, world_.meshes[m])) seen.push_back(m);
+        if (!seen.empty()) add({.kind = PassKind::HideBehind, .name = "hide behind", .why = "specular objects hide what is behind them", .reads = {"eye depth"}, .writes = {"points", "eye depth"}});
+        for (const int m : seen) {
+            const Mesh& mesh = world_.meshes[m];
+            const std::string& name = mesh.name;
+            add({.kind = PassKind::SeenLayers, .name = "layers of " + name + " from the eye", .why = name + " is in view", .writes = {"object layers"}, .mesh = m});
+            add({.kind = PassKind::Impostor, .name = "surroundings of " + name, .why = "what it shows", .writes = {"impostor"}, .mesh = m});
+            if (world_.material_of(mesh).kind == SurfaceKind::Dielectric)
+                add({.kind = PassKind::TraceSeen, .name = "through " + name, .why = "glass is looked through", .reads = {"object layers", "impostor", "eye depth"}, .writes = {"refracted points", "emission"}, .mesh = m});
+            add({.kind = PassKind::TraceSeen, .name = "reflected in " + name, .why = "smooth surfaces reflect", .reads = {"object layers", "impostor", "eye depth"}, .writes = {"reflected points", "emission"}, .mesh = m, .reflect = true});
+        }
+    }
+
+    void plan_light(int l, bool receivers, bool casters) {
+        const Light& light = world_.lights[l];
+        if (settings_.leave_out && !receivers) return leave_out("light " + light.name, "there is no receiver to shine on");
+        add({.kind = PassKind::ShadowMap, .name = "shadow map of " + light.name, .why = "surfaces hide each other from the light", .writes = {"shadow map"}, .light = l});
+        add({.kind = PassKind::DirectLight, .name = "light of " + light.name, .why = "receivers are lit", .reads = {"points", "shadow map"}, .writes = {"direct"}, .light = l});
+        if (!casters) return leave_out("caustics of " + light.name, "there is no specular object");
+        bool receiver_map = false;
+        for (int m = 0; m < static_cast<int>(world_.meshes.size()); ++m) {
+            const Mesh& mesh = world_.meshes[m];
+            if (!specular(world_, mesh)) continue;
+            const std::string caustic = "caustics of " + light.name + " by " + mesh.name;
+            if (!receiver_map) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
+            receiver_map = true;
+            add({.kind = PassKind::CasterLayers, .name = "layers of " + mesh.name + " from " + light.name, .why = "light meets its two sides", .writes = {"object layers", "occluders"}, .light = l, .mesh = m});
+            const bool dielectric = world_.material_of(mesh).kind == SurfaceKind::Dielectric;
+            if (dielectric) plan_map(l, m, false, true, caustic + ", refracted");
+            plan_map(l, m, true, dielectric, caustic + ", reflected");
+        }
+    }
+
+    void plan_map(int l, int m, bool reflect, bool other_branch, const std::string& name) {
+        const int map = static_cast<int>(plan_.maps.size());
+        plan_.maps.push_back({l, m, reflect, other_branch});
+        const auto with = [&](PassKind kind, const char* what, const char* why, std::vector<std::string> reads, std::vector<std::string> writes) {
+            add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = l, .mesh = m, .map = map, .reflect = reflect});
+        };
+        with(PassKind::Photons, "photons", "the light is followed to where it lands", {"object layers", "occluders", "receiver map"}, {"photons"});
+        with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});
+        with(PassKind::CausticReceivers, "receivers", "the map's texels lie on surfaces", {"map view"}, {"map receivers"});
+        with(PassKind::SplatPhotons, "splat", "photons are added up", {"photons", "map view"}, {"map flux"});
+        with(PassKind::ResolveCaustic, "resolve", "flux becomes irradiance", {"map flux", "map receivers"}, {"caustic map"});
+        with(PassKind::CausticLight, "shade", "receivers are lit by the caustic", {"points", "caustic map"}, {"caustic"});
+    }
+
+    void plan_emission() {
+        bool emits = false;
+        for (const Mesh& m : world_.meshes) emits = emits || (world_.material_of(m).emission != glm::vec3(0.0f) && !specular(world_, m));
+        if (emits) add({.kind = PassKind::Emission, .name = "emission", .why = "surfaces glow", .reads = {"eye depth"}, .writes = {"emission"}});
+        else leave_out("emission", "no surface glows");
+        if (!world_.environment.empty()) add({.kind = PassKind::Surroundings, .name = "surroundings", .why = "there is an environment picture", .reads = {"eye depth"}, .writes = {"emission"}});
+        else leave_out("surroundings", "there is no environment picture");
+    }
+
+    const World& world_;
+    const Settings& settings_;
+    FramePlan plan_;
+};
+
+}  // namespace
+
+View eye_view(const World& world, const Settings& settings) {
+    const Camera& camera = world.camera;
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    View v;
+    v.origin = camera.position;
+    v.right = camera.right;
+    v.up = camera.up;
+    v.forward = camera.forward;
+    v.half = {camera.tan_half_height * aspect, camera.tan_half_height};
+    v.near_plane = camera.near_plane;
+    return v;
+}
+
+FramePlan make_full_plan(const World& world, const Settings& settings) { return Planner(world, settings).make(); }
+
+const char* why_idle(const Pass& pass, const World& world, const Settings& settings) {
+    if (pass.light >= 0 && world.lights[pass.light].intensity == glm::vec3(0.0f)) return "the light's intensity is 0";
+    if (pass.light >= 0 && pass.mesh >= 0 && !lights_box(world.lights[pass.light], world.meshes[pass.mesh].low, world.meshes[pass.mesh].high)) return "the light's cone does not reach the object";
+    if (pass.light < 0 && pass.mesh >= 0 && outside(eye_view(world, settings), world.meshes[pass.mesh].low, world.meshes[pass.mesh].high)) return "the object is not in view";
+    return nullptr;
+}
+
+FramePlan make_plan(const World& world, const Settings& settings) {
+    FramePlan plan = make_full_plan(world, settings);
+    if (!settings.leave_out) return plan;
+    std::vector<Pass> needed;
+    for (Pass& pass : plan.passes) {
+        if (const char* why = why_idle(pass, world, settings)) plan.left_out.push_back({pass.name, why});
+        else needed.push_back(std::move(pass));
+    }
+    plan.passes = std::move(needed);
+    return plan;
+}
+
+}  // namespace nephroid::stages

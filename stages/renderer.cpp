@@ -1,0 +1,633 @@
+#include "stages/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+
+#include "stages/caustic_view.hpp"
+#include "stages/mapping/splat_pass.hpp"
+#include "stages/mapping/vertex_photons.hpp"
+#include "stages/shading/lighting.hpp"
+#include "stages/shading/seen_through.hpp"
+
+namespace nephroid::stages {
+
+namespace {
+
+double now_ms() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+int log2_of(int n) {
+    int l = 0;
+    while (1 << l < n) ++l;
+    return l;
+}
+
+Texture target(Format format, int width, int height, const char* name, int layers = 1) {
+    return Texture({.format = format, .width = width, .height = height, .layers = layers, .kind = layers > 1 ? TextureKind::Texture2DArray : TextureKind::Texture2D, .name = name});
+}
+Texture layered(Format format, int size, int layers, const char* name) {
+    return Texture({.format = format, .width = size, .height = size, .layers = layers, .kind = TextureKind::Texture2DArray, .name = name});
+}
+
+// Points to be shaded: what the eye sees first, through something, and in something.
+struct PointPictures {
+    Texture positions, normals, albedo;
+    SurfacePoints view() const { return {positions, normals, albedo}; }
+};
+enum PointSource { first, refracted, reflected, point_sources };
+
+// A specular object as a view sees it.
+struct LayerPictures {
+    Texture front_depth, back_depth, front_normals, back_normals;
+    LayerPictures() = default;
+    LayerPictures(int width, int height)
+        : front_depth(target(Format::D32F, width, height, "front depth")), back_depth(target(Format::D32F, width, height, "back depth")),
+          front_normals(target(Format::RGBA32F, width, height, "front normals")), back_normals(target(Format::RGBA32F, width, height, "back normals")) {}
+};
+
+struct CausticPictures {
+    Texture irradiance, depth, wide_irradiance, wide_depth;
+    CausticViewFitter::Fit fit;
+};
+
+PipelineState state(const char* name, CullMode cull, DepthState depth) {
+    PipelineState s{.name = name, .depth = depth};
+    s.rasterizer.cull = cull;
+    s.rasterizer.front_counter_clockwise = true;
+    return s;
+}
+PipelineState screen_state(const char* name) { return state(name, CullMode::None, depth_off); }
+
+double sum_channel(Executor& executor, const Texture& texture, int channel, std::vector<double>& rows) {
+    executor.for_each(texture.height(), [&](int y, int) {
+        const float* texel = reinterpret_cast<const float*>(texture.row(y));
+        double sum = 0;
+        for (int x = 0; x < texture.width(); ++x) sum += texel[4 * x + channel];
+        rows[y] = sum;
+    });
+    double sum = 0;
+    for (int y = 0; y < texture.height(); ++y) sum += rows[y];
+    return sum;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+    Device& device;
+    const World& world;
+    Settings settings;
+    FramePlan plan;
+    std::vector<PassRecord> records;
+    EnergyAudit audit;
+    Faults faults, frame_faults;
+    Observer* observer = nullptr;
+    PipelineStatistics statistics;  // of the pass that runs
+
+    int width, height;  // of the samples
+    float reach;
+    PointPictures points[point_sources];
+    Texture eye_depth, direct, caustic, emission, small_direct, small_caustic, small_emission;
+    LayerPictures seen_layers;
+    Texture impostor_depth, impostor_normals, impostor_albedo, impostor_ids;
+    CubeViews impostor_faces;
+    Texture shadow_depth, shadow_ids, receiver_depth, receiver_ids;
+    LayerPictures caster_layers;
+    SolidLayers caster;
+    Texture occluders;
+    std::vector<Texture> photon_positions, photon_fluxes;  // per map
+    Texture accounts, losses;
+    std::vector<CausticPictures> maps;
+    Texture map_flux, map_sides, wide_flux, wide_sides, map_accounts, wide_accounts;
+    std::vector<Buffer<mapping::VertexArea<float>>> vertex_areas;  // per mesh; variant Vertices
+    CausticViewFitter fitter;
+    std::vector<double> row_sums;
+
+    Impl(Device& d, const World& w, const Settings& s);
+
+    // ---- drawing
+
+    template <class P>
+    void draw(const P& program, const PipelineState& s, DrawCall call) {
+        call.observer = observer;
+        const DrawResult r = device.draw(program, s, call);
+        frame_faults.add(r.faults);
+        statistics += r.statistics;
+    }
+    void clear(const TargetView& view, const glm::vec4& value = glm::vec4(0.0f)) { frame_faults.add(device.clear(view, value)); }
+    template <class PS>
+    void draw_screen(const char* name, const PS& shader, const std::array<TargetView, max_render_targets>& targets, const BlendState& blend = blend_opaque) {
+        PipelineState s = screen_state(name);
+        s.blend.fill(blend);
+        draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = targets});
+    }
+    bool specular(int mesh) const { return world.material_of(world.meshes[mesh]).kind != SurfaceKind::Lambert; }
+    Texture2DView<Format::RGBA8Srgb> texture_of(const Material& m) const {
+        return m.texture >= 0 ? Texture2DView<Format::RGBA8Srgb>(world.textures[m.texture]) : Texture2DView<Format::RGBA8Srgb>();
+    }
+    // Draws meshes that `wanted` accepts and the view can see.
+    template <class Wanted, class Shader>
+    void draw_meshes(const PipelineState& s, const View& view, const std::array<TargetView, max_render_targets>& targets, const TargetView& depth, Wanted&& wanted, Shader&& shader_of) {
+        for (int m = 0; m < static_cast<int>(world.meshes.size()); ++m) {
+            const Mesh& mesh = world.meshes[m];
+            if (!wanted(m) || outside(view, mesh.low, mesh.high)) continue;
+            draw(Program{ProjectSurface{view}, shader_of(m)}, s, {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = targets, .depth_target = depth});
+        }
+    }
+    StoreReceiver store_receiver(int m, const View& view, int target_width, int target_height) const {
+        const Mesh& mesh = world.meshes[m];
+        const Material& material = world.material_of(mesh);
+        const float measure = 4.0f * view.half.x * view.half.y / (static_cast<float>(target_width) * static_cast<float>(target_height));
+        return {mesh.triangles, texture_of(material), view, m, material.base_color, measure};
+    }
+    // Receivers are seen from behind only if their material says so. Light they stop from both sides.
+    CullMode eye_cull(int m) const { return world.material_of(world.meshes[m]).two_sided ? CullMode::None : CullMode::Back; }
+
+    // ---- views
+    View eye() const { return eye_view(world, settings); }
+    glm::vec3 scene_centre() const { return (world.low + world.high) * 0.5f; }
+    View parallel_view(const Light& light) const {
+        View v = make_view(scene_centre(), light.direction);
+        v.perspective = false;
+        v.half = glm::vec2(reach * 0.5f);
+        v.near_plane = -reach;
+        v.far_plane = reach;
+        return v;
+    }
+    // The one view that a light's shadows need; a light that shines more widely needs a cube.
+    bool has_shadow_view(const Light& light) const { return light.kind == LightKind::Directional || (light.kind == LightKind::Spot && light.cos_outer > 0.5f); }
+    View shadow_view(const Light& light) const {
+        if (light.kind == LightKind::Directional) return parallel_view(light);
+        View v = make_view(light.position, light.direction);
+        constexpr float margin = 1.01f;
+        v.half = glm::vec2(std::sqrt(1 - light.cos_outer * light.cos_outer) / light.cos_outer * margin);
+        v.near_plane = reach * 1e-4f;
+        return v;
+    }
+    CubeViews cube_views(const glm::vec3& centre) const { return CubeViews(centre, reach * 1e-4f); }
+    View caster_view(const Light& light, const Mesh& mesh) const;
+
+    // ---- passes
+    void run(const Pass& pass);
+    void draw_depth_map(std::span<const View> views, const Texture& depth, const Texture& ids, bool with_specular);
+    void shadow_map(const Light& light);
+    void receiver_map(const Light& light);
+    void draw_layers(const View& view, int m, const LayerPictures& to);
+    void caster_pass(const Pass& pass);
+    void photon_pass(const Pass& pass);
+    void caustic_receivers(const Pass& pass);
+    void splat(const Pass& pass);
+    void resolve(const Pass& pass);
+    void surface_points();
+    void hide_behind();
+    void impostor(const Pass& pass);
+    void trace_seen(const Pass& pass);
+    void emission_pass();
+    void direct_light(const Pass& pass);
+    void caustic_light(const Pass& pass);
+    void downsample();
+
+    ReceiverMap light_receivers(const Light& light) const;
+    SolidLayers solid(const View& view, int m, const LayerPictures& from) const;
+    SpecularMaterial specular_material(int m) const;
+    int wide_layers(const Light& light) const { return light.kind == LightKind::Directional ? 1 : 6; }
+};
+
+Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
+    : device(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
+    const bool any_specular = std::any_of(world.meshes.begin(), world.meshes.end(), [&](const Mesh& m) { return world.material_of(m).kind != SurfaceKind::Lambert; });
+    reach = std::max(glm::length(world.high - world.low), 1e-6f);
+    // Lights may stand outside the bounds of what they light.
+    for (const Light& l : world.lights)
+        if (l.kind != LightKind::Directional) reach = std::max(reach, glm::length(l.position - scene_centre()) + glm::length(world.high - world.low));
+    for (int k = 0; k < (any_specular ? point_sources : 1); ++k) {
+        points[k].positions = target(Format::RGBA32F, width, height, "positions");
+        points[k].normals = target(Format::RGBA32F, width, height, "normals");
+        points[k].albedo = target(Format::RGBA32F, width, height, "albedo");
+    }
+    eye_depth = target(Format::D32F, width, height, "eye depth");
+    direct = target(Format::RGBA32F, width, height, "direct");
+    caustic = target(Format::RGBA32F, width, height, "caustic");
+    emission = target(Format::RGBA32F, width, height, "emission");
+    if (settings.samples_side > 1) {
+        small_direct = target(Format::RGBA32F, settings.width, settings.height, "direct");
+        small_caustic = target(Format::RGBA32F, settings.width, settings.height, "caustic");
+        small_emission = target(Format::RGBA32F, settings.width, settings.height, "emission");
+    }
+    shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
+    shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
+    if (any_specular) {
+        seen_layers = LayerPictures(width, height);
+        impostor_depth = layered(Format::D32F, settings.impostor_size, 6, "impostor depth");
+        impostor_normals = layered(Format::RGBA32F, settings.impostor_size, 6, "impostor normals");
+        impostor_albedo = layered(Format::RGBA8Srgb, settings.impostor_size, 6, "impostor albedo");
+    }
+    if (!plan.maps.empty()) {
+        const int n = settings.photons, size = settings.map_size, wide = size / 2;
+        receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
+        receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
+        caster_layers = LayerPictures(n, n);
+        occluders = target(Format::D32F, n, n, "occluders");
+        accounts = target(Format::RGBA32F, n, n, "accounts");
+        losses = target(Format::RGBA32F, n, n, "losses");
+        map_flux = layered(Format::RGBA32F, size, 1, "map flux");
+        map_sides = layered(Format::RGBA32F, size, 1, "map receivers");
+        wide_flux = layered(Format::RGBA32F, wide, 6, "wide map flux");
+        wide_sides = layered(Format::RGBA32F, wide, 6, "wide map receivers");
+        map_accounts = target(Format::RGBA32F, size, size, "map accounts");
+        wide_accounts = target(Format::RGBA32F, wide, wide, "wide map accounts");
+        maps.resize(plan.maps.size());
+        for (std::size_t k = 0; k < maps.size(); ++k) {
+            maps[k].irradiance = layered(Format::RGBA32F, size, 1, "caustic map");
+            maps[k].depth = layered(Format::D32F, size, 1, "caustic map depth");
+            maps[k].wide_irradiance = layered(Format::RGBA32F, wide, 6, "wide caustic map");
+            maps[k].wide_depth = layered(Format::D32F, wide, 6, "wide caustic map depth");
+            photon_positions.push_back(target(Format::RGBA32F, n, n, "photon positions"));
+            photon_fluxes.push_back(target(Format::RGBA32F, n, n, "photon fluxes"));
+        }
+        row_sums.resize(static_cast<std::size_t>(std::max(n, size)));
+    }
+    if (settings.variant == mapping::Variant::Vertices) {
+        for (int m = 0; m < static_cast<int>(world.meshes.size()); ++m) {
+            const Mesh& mesh = world.meshes[m];
+            Buffer<mapping::VertexArea<float>> areas(specular(m) ? mesh.vertices.size() : 0, "vertex areas");
+            if (specular(m) && mesh.vertices.size() > std::int64_t{settings.photons} * settings.photons)
+                faults.add("photons", "must be at least as many as the object's vertices", std::int64_t{settings.photons} * settings.photons, mesh.vertices.size());
+            for (std::int64_t t = 0; specular(m) && t < mesh.indices.size(); t += 3) {
+                const std::uint32_t* i = mesh.indices.data() + t;
+                const glm::vec3 a = mesh.vertices[i[0]].position, b = mesh.vertices[i[1]].position, c = mesh.vertices[i[2]].position;
+                for (int k = 0; k < 3; ++k) areas[i[k]].area += glm::cross(b - a, c - a) * (1.0f / 6.0f);
+            }
+            vertex_areas.push_back(std::move(areas));
+        }
+    }
+    faults.add(device.faults());
+}
+
+// ---- views and sources
+
+// A view of one object from a light that holds all of it, or as much as one picture can.
+View Renderer::Impl::caster_view(const Light& light, const Mesh& mesh) const {
+    const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
+    View v = light.kind == LightKind::Directional ? parallel_view(light) : light.kind == LightKind::Spot ? make_view(light.position, light.direction) : look_at(light.position, centre);
+    float left = 1e30f, right = -1e30f, bottom = 1e30f, top = -1e30f;
+    constexpr float widest = 4.0f;  // tangent
+    for (int k = 0; k < 8; ++k) {
+        const glm::vec3 d = glm::vec3(k & 1 ? mesh.high.x : mesh.low.x, k & 2 ? mesh.high.y : mesh.low.y, k & 4 ? mesh.high.z : mesh.low.z) - v.origin;
+        const float z = glm::dot(d, v.forward);
+        float x = glm::dot(d, v.right), y = glm::dot(d, v.up);
+        if (v.perspective) {
+            const float least = std::max(std::max(std::abs(x), std::abs(y)) / widest, 1e-20f);
+            x /= std::max(z, least);
+            y /= std::max(z, least);
+        }
+        left = std::min(left, x), right = std::max(right, x), bottom = std::min(bottom, y), top = std::max(top, y);
+    }
+    if (light.kind == LightKind::Spot && light.cos_outer > 0.1f) {
+        // Nothing outside the cone is lit.
+        const float tangent = std::sqrt(std::max(0.0f, 1 - light.cos_outer * light.cos_outer)) / light.cos_outer;
+        left = std::max(left, -tangent), right = std::min(right, tangent), bottom = std::max(bottom, -tangent), top = std::min(top, tangent);
+        if (left >= right || bottom >= top) left = bottom = -tangent, right = top = tangent;
+    }
+    constexpr float margin = 1.01f;
+    v.centre = {(left + right) * 0.5f, (bottom + top) * 0.5f};
+    v.half = {std::max((right - left) * 0.5f * margin, 1e-7f), std::max((top - bottom) * 0.5f * margin, 1e-7f)};
+    if (v.perspective) v.near_plane = reach * 1e-4f;
+    return v;
+}
+
+ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
+    ReceiverMap map;
+    map.cube = light.kind != LightKind::Directional;
+    if (map.cube) map.faces = cube_views(light.position);
+    else map.parallel = parallel_view(light);
+    map.depth = receiver_depth;
+    map.ids = receiver_ids;
+    map.size = settings.receiver_map_size;
+    return map;
+}
+
+SolidLayers Renderer::Impl::solid(const View& view, int m, const LayerPictures& from) const {
+    const Mesh& mesh = world.meshes[m];
+    const glm::vec3 margin = glm::vec3(glm::length(mesh.high - mesh.low) * 1e-4f);
+    return {view, from.front_depth, from.back_depth, from.front_normals, from.back_normals, from.front_depth.width(), from.front_depth.height(), mesh.closed, mesh.low - margin, mesh.high + margin};
+}
+
+SpecularMaterial Renderer::Impl::specular_material(int m) const {
+    const Material& material = world.material_of(world.meshes[m]);
+    return {material.kind, material.ior, material.thin_walled, material.base_color, material.attenuation};
+}
+
+// ---- passes
+
+void Renderer::Impl::draw_depth_map(std::span<const View> views, const Texture& depth, const Texture& ids, bool with_specular) {
+    for (int layer = 0; layer < static_cast<int>(views.size()); ++layer) {
+        const View& view = views[layer];
+        clear(depth.mip(0, layer));
+        clear(ids.mip(0, layer));
+        draw_meshes(state("depth map", CullMode::None, depth_greater), view, {ids.mip(0, layer)}, depth.mip(0, layer), [&](int m) { return with_specular || !specular(m); },
+                    [&](int m) { return StoreId{world.meshes[m].triangles, view, m}; });
+    }
+}
+
+void Renderer::Impl::shadow_map(const Light& light) {
+    const View single = has_shadow_view(light) ? shadow_view(light) : View();
+    const CubeViews faces = cube_views(light.position);
+    draw_depth_map(has_shadow_view(light) ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), shadow_depth, shadow_ids, true);
+}
+void Renderer::Impl::receiver_map(const Light& light) {
+    const View single = light.kind == LightKind::Directional ? parallel_view(light) : View();
+    const CubeViews faces = cube_views(light.position);
+    draw_depth_map(light.kind == LightKind::Directional ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), receiver_depth, receiver_ids, false);
+}
+
+void Renderer::Impl::draw_layers(const View& view, int m, const LayerPictures& to) {
+    const Mesh& mesh = world.meshes[m];
+    const auto layer = [&](const Texture& depth, const Texture& normals, CullMode cull) {
+        clear(depth.mip());
+        draw(Program{ProjectSurface{view}, StoreNormals{mesh.triangles}}, state("object layer", cull, depth_greater),
+             {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = {normals.mip()}, .depth_target = depth.mip()});
+    };
+    layer(to.front_depth, to.front_normals, mesh.closed ? CullMode::Back : CullMode::None);
+    if (mesh.closed) layer(to.back_depth, to.back_normals, CullMode::Front);
+    else clear(to.back_depth.mip());
+}
+
+void Renderer::Impl::caster_pass(const Pass& pass) {
+    const View view = caster_view(world.lights[pass.light], world.meshes[pass.mesh]);
+    draw_layers(view, pass.mesh, caster_layers);
+    clear(occluders.mip());
+    for (int m = 0; m < static_cast<int>(world.meshes.size()); ++m) {
+        const Mesh& mesh = world.meshes[m];
+        if (m == pass.mesh || outside(view, mesh.low, mesh.high)) continue;
+        draw(Program{ProjectSurface{view}}, state("occluders", CullMode::None, depth_greater), {.vertices = mesh.vertices, .indices = &mesh.indices, .depth_target = occluders.mip()});
+    }
+    caster = solid(view, pass.mesh, caster_layers);
+}
+
+void Renderer::Impl::photon_pass(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    mapping::TracePhotons photons;
+    photons.tracer.solid = caster;
+    photons.tracer.material = specular_material(pass.mesh);
+    photons.tracer.bounces = settings.bounces;
+    ReceiverSearch& search = photons.tracer.receivers;
+    search.map = light_receivers(light);
+    search.method = settings.intersection;
+    search.iterations = settings.iterations;
+    search.low = world.low;
+    search.high = world.high;
+    search.reach = reach;
+    photons.light = LightSource(light);
+    photons.occluders = occluders;
+    photons.variant = settings.variant;
+    photons.branch = pass.reflect ? mapping::Branch::Reflect : mapping::Branch::Refract;
+    photons.other_branch_followed = plan.maps[pass.map].other_branch;
+    const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
+    if (settings.variant == mapping::Variant::Vertices) {
+        for (int t = 0; t < 4; ++t) clear(targets[t]);
+        const Mesh& mesh = world.meshes[pass.mesh];
+        PipelineState s = screen_state("vertex photons");
+        s.topology = Topology::PointList;
+        draw(Program{mapping::TraceVertexPhotons{photons, vertex_areas[pass.mesh], log2_of(settings.photons)}, mapping::StoreTracedPhoton{}}, s, {.vertices = mesh.vertices, .render_targets = targets});
+    } else {
+        draw_screen("photons", photons, targets);
+    }
+    if (!settings.audit) return;
+    Executor& executor = device.executor();
+    audit.emitted += sum_channel(executor, accounts, 0, row_sums);
+    audit.absorbed += sum_channel(executor, accounts, 1, row_sums);
+    audit.not_followed += sum_channel(executor, accounts, 2, row_sums);
+    audit.correction += sum_channel(executor, accounts, 3, row_sums);
+    audit.trapped += sum_channel(executor, losses, 0, row_sums);
+    audit.missed += sum_channel(executor, losses, 1, row_sums);
+}
+
+void Renderer::Impl::caustic_receivers(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    CausticPictures& map = maps[pass.map];
+    if (map.fit.empty) return;
+    const auto receivers = [&](const View& view, const TargetView& sides, const TargetView& depth) {
+        clear(sides);
+        clear(depth);
+        draw_meshes(state("map receivers", CullMode::None, depth_greater), view, {sides}, depth, [&](int m) { return !specular(m); },
+                    [&](int m) { return mapping::StoreReceiverSide{world.meshes[m].triangles, view, m}; });
+    };
+    receivers(map.fit.view, map_sides.mip(), map.depth.mip());
+    if (!map.fit.outside) return;
+    const CubeViews faces = cube_views(light.position);
+    for (int layer = 0; layer < wide_layers(light); ++layer)
+        receivers(light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], wide_sides.mip(0, layer), map.wide_depth.mip(0, layer));
+}
+
+void Renderer::Impl::splat(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    const CausticPictures& map = maps[pass.map];
+    if (map.fit.empty) return;
+    mapping::PlacePhoton place;
+    place.positions = photon_positions[pass.map];
+    place.fluxes = photon_fluxes[pass.map];
+    place.log2_side = log2_of(settings.photons);
+    place.focus = map.fit.view;
+    place.cube = light.kind != LightKind::Directional;
+    place.faces = cube_views(light.position);
+    place.parallel = parallel_view(light);
+    place.focus_size = place.map_size = settings.map_size;
+    place.sprite_size = settings.sprite_size;
+    PipelineState s = screen_state("splat photons");
+    s.topology = Topology::PointList;
+    s.blend = {blend_additive};
+    s.rasterizer.point_size = settings.sprite_size;
+    s.rasterizer.depth_clip = false;
+    const VertexSource all = vertex_count(std::int64_t{settings.photons} * settings.photons);
+    clear(map_flux.mip());
+    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {map_flux.mip()}});
+    if (!map.fit.outside) return;
+    place.wide = true;
+    place.map_size = settings.map_size / 2;
+    clear(wide_flux.layers(0, wide_layers(light)));
+    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {wide_flux.layers(0, wide_layers(light))}});
+}
+
+void Renderer::Impl::resolve(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    CausticPictures& map = maps[pass.map];
+    if (map.fit.empty) return;
+    const auto resolve_layer = [&](const Texture& flux, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
+        const Texture& sums = size == settings.map_size ? map_accounts : wide_accounts;
+        draw_screen("resolve caustic map", mapping::ResolveIrradiance{flux, sides, depth, view, layer, size}, {irradiance.mip(0, layer), sums.mip()});
+        if (!settings.audit) return;
+        audit.deposited += sum_channel(device.executor(), sums, 0, row_sums);
+        audit.beside += sum_channel(device.executor(), sums, 1, row_sums);
+    };
+    resolve_layer(map_flux, map_sides, map.depth, map.irradiance, map.fit.view, 0, settings.map_size);
+    if (!map.fit.outside) return;
+    const CubeViews faces = cube_views(light.position);
+    for (int layer = 0; layer < wide_layers(light); ++layer)
+        resolve_layer(wide_flux, wide_sides, map.wide_depth, map.wide_irradiance, light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], layer, settings.map_size / 2);
+}
+
+void Renderer::Impl::surface_points() {
+    const View view = eye();
+    clear(eye_depth.mip());
+    for (PointPictures& p : points)
+        if (!p.positions.empty()) clear(p.positions.mip());
+    for (const Texture* t : {&direct, &caustic, &emission}) clear(t->mip());
+    for (const CullMode cull : {CullMode::None, CullMode::Back})
+        draw_meshes(state("surface points", cull, depth_greater), view, {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
+                    [&](int m) { return !specular(m) && eye_cull(m) == cull; }, [&](int m) { return store_receiver(m, view, width, height); });
+}
+
+void Renderer::Impl::hide_behind() {
+    const View view = eye();
+    for (const bool closed : {true, false})
+        draw_meshes(state("hide behind", closed ? CullMode::Back : CullMode::None, depth_greater), view,
+                    {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
+                    [&](int m) { return specular(m) && world.meshes[m].closed == closed; }, [](int) { return HideReceivers{}; });
+}
+
+void Renderer::Impl::impostor(const Pass& pass) {
+    const Mesh& mesh = world.meshes[pass.mesh];
+    impostor_faces = cube_views((mesh.low + mesh.high) * 0.5f);
+    for (int layer = 0; layer < 6; ++layer) {
+        const View view = impostor_faces.face[layer];
+        clear(impostor_depth.mip(0, layer));
+        clear(impostor_normals.mip(0, layer));
+        for (const CullMode cull : {CullMode::None, CullMode::Back})
+            draw_meshes(state("impostor", cull, depth_greater), view, {impostor_normals.mip(0, layer), impostor_albedo.mip(0, layer)}, impostor_depth.mip(0, layer),
+                        [&](int m) { return !specular(m) && eye_cull(m) == cull; }, [&](int m) { return StoreImpostor{store_receiver(m, view, settings.impostor_size, settings.impostor_size)}; });
+    }
+}
+
+void Renderer::Impl::trace_seen(const Pass& pass) {
+    TraceSeen trace;
+    trace.tracer.solid = solid(eye(), pass.mesh, seen_layers);
+    trace.tracer.material = specular_material(pass.mesh);
+    trace.tracer.bounces = settings.bounces;
+    trace.tracer.light = false;
+    ReceiverSearch& search = trace.tracer.receivers;
+    search.map.cube = true;
+    search.map.faces = impostor_faces;
+    search.map.depth = impostor_depth;
+    search.map.size = settings.impostor_size;
+    search.low = world.low;
+    search.high = world.high;
+    search.reach = reach;
+    trace.eye_depth = eye_depth;
+    trace.impostor_normals = impostor_normals;
+    trace.impostor_albedo = impostor_albedo;
+    trace.surroundings.picture = world.environment;
+    trace.way = pass.reflect ? Way::Reflect : Way::Refract;
+    const PointPictures& to = points[pass.reflect ? reflected : refracted];
+    PipelineState s = screen_state("trace seen");
+    s.blend[3] = blend_additive;
+    draw(Program{CoverScreen{}, trace}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
+}
+
+void Renderer::Impl::emission_pass() {
+    const View view = eye();
+    PipelineState s = state("emission", CullMode::None, {CompareOp::Equal, false});
+    s.blend = {blend_additive};
+    draw_meshes(s, view, {emission.mip()}, eye_depth.mip(), [&](int m) { return !specular(m) && world.material_of(world.meshes[m]).emission != glm::vec3(0.0f); },
+                [&](int m) { return StoreEmission{world.material_of(world.meshes[m]).emission}; });
+}
+
+void Renderer::Impl::direct_light(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    ShadowMap shadows;
+    shadows.cube = !has_shadow_view(light);
+    if (shadows.cube) shadows.faces = cube_views(light.position);
+    else shadows.single = shadow_view(light);
+    shadows.depth = shadow_depth;
+    shadows.ids = shadow_ids;
+    shadows.size = settings.shadow_map_size;
+    for (const PointPictures& p : points)
+        if (!p.positions.empty()) draw_screen("direct light", ShadeDirect{p.view(), LightSource(light), shadows}, {direct.mip()}, blend_additive);
+}
+
+void Renderer::Impl::caustic_light(const Pass& pass) {
+    const Light& light = world.lights[pass.light];
+    const CausticPictures& from = maps[pass.map];
+    if (from.fit.empty) return;
+    CausticMap map;
+    map.focus = from.fit.view;
+    map.focus_irradiance = from.irradiance;
+    map.focus_depth = from.depth;
+    map.size = settings.map_size;
+    map.has_wide = from.fit.outside;
+    map.wide_cube = light.kind != LightKind::Directional;
+    if (map.wide_cube) map.faces = cube_views(light.position);
+    else map.parallel = parallel_view(light);
+    map.wide_irradiance = from.wide_irradiance;
+    map.wide_depth = from.wide_depth;
+    map.wide_size = settings.map_size / 2;
+    for (const PointPictures& p : points)
+        if (!p.positions.empty()) draw_screen("caustic light", ShadeCaustic{p.view(), map}, {caustic.mip()}, blend_additive);
+}
+
+void Renderer::Impl::downsample() {
+    draw_screen("downsample", Downsample{direct, settings.samples_side}, {small_direct.mip()});
+    draw_screen("downsample", Downsample{caustic, settings.samples_side}, {small_caustic.mip()});
+    draw_screen("downsample", Downsample{emission, settings.samples_side}, {small_emission.mip()});
+}
+
+void Renderer::Impl::run(const Pass& pass) {
+    switch (pass.kind) {
+        case PassKind::ShadowMap: return shadow_map(world.lights[pass.light]);
+        case PassKind::ReceiverMap: return receiver_map(world.lights[pass.light]);
+        case PassKind::CasterLayers: return caster_pass(pass);
+        case PassKind::Photons: return photon_pass(pass);
+        case PassKind::FitCausticView:
+            maps[pass.map].fit = fitter.fit(device.executor(), photon_positions[pass.map], photon_fluxes[pass.map], world.lights[pass.light], scene_centre(), reach);
+            return;
+        case PassKind::CausticReceivers: return caustic_receivers(pass);
+        case PassKind::SplatPhotons: return splat(pass);
+        case PassKind::ResolveCaustic: return resolve(pass);
+        case PassKind::SurfacePoints: return surface_points();
+        case PassKind::HideBehind: return hide_behind();
+        case PassKind::SeenLayers: return draw_layers(eye(), pass.mesh, seen_layers);
+        case PassKind::Impostor: return impostor(pass);
+        case PassKind::TraceSeen: return trace_seen(pass);
+        case PassKind::Surroundings: return draw_screen("surroundings", ShadeSurroundings{eye(), eye_depth, {world.environment}, 1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height)}, {emission.mip()}, blend_additive);
+        case PassKind::Emission: return emission_pass();
+        case PassKind::DirectLight: return direct_light(pass);
+        case PassKind::CausticLight: return caustic_light(pass);
+        case PassKind::Downsample: return downsample();
+    }
+}
+
+// ---- the renderer
+
+Renderer::Renderer(Device& device, const World& world, const Settings& settings) : impl_(std::make_unique<Impl>(device, world, settings)) {}
+Renderer::~Renderer() = default;
+
+const Faults& Renderer::faults() const { return impl_->faults; }
+const FramePlan& Renderer::plan() const { return impl_->plan; }
+const std::vector<PassRecord>& Renderer::records() const { return impl_->records; }
+const EnergyAudit& Renderer::audit() const { return impl_->audit; }
+const Texture& Renderer::photon_positions(int map) const { return impl_->photon_positions[static_cast<std::size_t>(map)]; }
+const Texture& Renderer::photon_fluxes(int map) const { return impl_->photon_fluxes[static_cast<std::size_t>(map)]; }
+void Renderer::observe(Observer* observer) { impl_->observer = observer; }
+
+Picture Renderer::picture() const {
+    if (impl_->settings.samples_side > 1) return {&impl_->small_direct, &impl_->small_caustic, &impl_->small_emission};
+    return {&impl_->direct, &impl_->caustic, &impl_->emission};
+}
+
+Faults Renderer::render() {
+    Impl& r = *impl_;
+    if (!r.faults.empty()) return r.faults;
+    r.frame_faults = Faults();
+    r.audit = EnergyAudit();
+    for (std::size_t k = 0; k < r.plan.passes.size(); ++k) {
+        const Pass& pass = r.plan.passes[k];
+        const double start = now_ms();
+        r.statistics = PipelineStatistics();
+        if (!r.settings.leave_out || !why_idle(pass, r.world, r.settings)) r.run(pass);
+        r.records[k] = {now_ms() - start, r.statistics};
+        if (!r.frame_faults.empty()) break;
+    }
+    return r.frame_faults;
+}
+
+}  // namespace nephroid::stages

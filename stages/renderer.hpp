@@ -1,0 +1,57 @@
+// Renders a world: runs the passes of a frame plan on the pipeline.
+//
+// Everything that a frame needs is allocated when the renderer is made; frames after the first allocate nothing, also when
+// lights and camera move in between.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/device.hpp"
+#include "stages/energy_audit.hpp"
+#include "stages/frame_plan.hpp"
+#include "stages/settings.hpp"
+#include "stages/world.hpp"
+
+namespace nephroid::stages {
+
+struct PassRecord {
+    double milliseconds = 0;
+    PipelineStatistics statistics;
+};
+
+// A picture's terms, RGBA32F radiance in W/(sr m^2); their sum is the picture. Owned by the renderer.
+struct Picture {
+    const Texture* direct = nullptr;    // light straight from the lamps, also where it is seen through something
+    const Texture* caustic = nullptr;   // light that specular objects have bent or reflected before it met a receiver
+    const Texture* emission = nullptr;  // of surfaces, and of the surroundings
+};
+
+class Renderer {
+public:
+    // The world and the device must outlive the renderer. faults() says what did not work out.
+    Renderer(Device& device, const World& world, const Settings& settings);
+    ~Renderer();
+
+    const Faults& faults() const;
+    const FramePlan& plan() const;
+
+    // Renders the world as it is now: lights and camera may have moved, meshes may not.
+    [[nodiscard]] Faults render();
+
+    Picture picture() const;
+    const std::vector<PassRecord>& records() const;  // one per pass of the plan
+    const EnergyAudit& audit() const;                // of the last frame
+    // For tests: the photons of a caustic map, [photons^2] texels: landing place and 1 if landed; flux, W.
+    const Texture& photon_positions(int map) const;
+    const Texture& photon_fluxes(int map) const;
+
+    // Called before a draw's pixel-stage invocations, if not null; makes the frame scalar and serial.
+    void observe(Observer* observer);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace nephroid::stages

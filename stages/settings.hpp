@@ -1,0 +1,24 @@
+// What a picture is asked to be.
+#pragma once
+#include "stages/image_space_tracer.hpp"
+#include "stages/mapping/photon_pass.hpp"
+
+namespace nephroid::stages {
+
+struct Settings {
+    int width = 1024, height = 768;
+    int samples_side = 1;  // a pixel is the mean of samples_side^2 samples
+    // mapping
+    mapping::Variant variant = mapping::Variant::TwoSided;
+    Intersection intersection = Intersection::Bisection;
+    int iterations = 12;
+    int photons = 1024;    // per light and object, along an edge; a power of two
+    int map_size = 1024;   // caustic map, along an edge
+    int receiver_map_size = 1024, shadow_map_size = 1024, impostor_size = 512;
+    float sprite_size = 3.0f;  // texels
+    int bounces = 8;
+    bool audit = true;         // keep the energy's accounts
+    bool leave_out = true;     // passes that change nothing; off only to see that they do not
+};
+
+}  // namespace nephroid::stages

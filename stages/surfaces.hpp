@@ -1,0 +1,116 @@
+// Shaders that draw the world's surfaces into pictures of depth, normals and colours.
+#pragma once
+#include "pipeline/program.hpp"
+#include "pipeline/texture_view.hpp"
+#include "stages/view.hpp"
+#include "stages/world.hpp"
+
+namespace nephroid::stages {
+
+template <class F>
+struct SurfaceVertex {
+    vec4<F> position;
+    vec3<F> world;
+    vec3<F> normal;
+    vec2<F> texcoord;
+    static constexpr auto varyings = std::tuple{smooth("world", &SurfaceVertex::world), smooth("normal", &SurfaceVertex::normal), smooth("texcoord", &SurfaceVertex::texcoord)};
+};
+
+struct ProjectSurface {
+    View view;
+    template <class F>
+    SurfaceVertex<F> operator()(const WorldVertex<F>& v) const {
+        return {view.clip(v.position), v.position, v.normal, v.texcoord};
+    }
+};
+
+// Surface ids: a mesh's number and the side that is seen, as floats that are exact; 0 is no surface.
+template <class F>
+inline F surface_id(int mesh, LaneMask<F> front) {
+    return F(static_cast<float>(2 * mesh + 1)) + select(front, F(1.0f), F(0.0f));
+}
+
+// Which side of its triangle a pixel shows to a viewer at `eye` (perspective) or looking along `forward`.
+template <class F>
+inline LaneMask<F> seen_from_front(const View& view, const vec3<F>& world, const vec3<F>& triangle_normal) {
+    const vec3<F> along = view.perspective ? world - broadcast<F>(view.origin) : broadcast<F>(view.forward);
+    return glm::dot(along, triangle_normal) < F(0.0f);
+}
+
+// Nothing but the surface's id, for maps that are compared against by depth.
+struct StoreId {
+    StructuredView<TriangleFacts> triangles;
+    View view;
+    int mesh;
+    template <class F>
+    vec4<F> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
+        const TriangleFacts<F> t = triangles.load<F>(as_int(pixel.primitive_id));
+        return vec4<F>(surface_id<F>(mesh, seen_from_front(view, in.world, t.normal)));
+    }
+};
+
+// Receivers: position and id; the shading normal on the side that is seen; albedo.
+struct StoreReceiver {
+    StructuredView<TriangleFacts> triangles;
+    Texture2DView<Format::RGBA8Srgb> base_texture;  // not valid: plain colour
+    View view;
+    int mesh;
+    glm::vec3 base_color;
+    float pixel_measure;  // of the target's pixels at unit distance (perspective) or in m^2, for choosing a mip level
+
+    template <class F>
+    std::array<vec4<F>, 3> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
+        const TriangleFacts<F> t = triangles.load<F>(as_int(pixel.primitive_id));
+        const LaneMask<F> front = seen_from_front(view, in.world, t.normal);
+        const vec3<F> n = glm::normalize(in.normal);
+        vec3<F> albedo = broadcast<F>(base_color);
+        if (base_texture.valid()) {
+            // Texels under a pixel, as if it were seen face to face: blurs no more than needed.
+            const vec3<F> along = in.world - broadcast<F>(view.origin);
+            const F area = view.perspective ? F(pixel_measure) * glm::dot(along, along) : F(pixel_measure);
+            const F texels = t.texels_per_square_metre * area;
+            // Half the binary logarithm, from the exponent and a straight line through the mantissa.
+            const LaneUint<F> bits = float_bits(max(texels, F(1.0f)));
+            const F logarithm = to_float(as_int(bits >> 23)) - F(127.0f) + (bits_float((bits & LaneUint<F>(0x7fffffu)) | LaneUint<F>(0x3f800000u)) - F(1.0f));
+            constexpr Sampler sampler{.filter = Filter::Trilinear, .address_u = AddressMode::Wrap, .address_v = AddressMode::Wrap};
+            albedo = albedo * vec3<F>(base_texture.sample<F>(sampler, in.texcoord, F(0.5f) * logarithm));
+        }
+        return {vec4<F>(in.world, surface_id<F>(mesh, front)), vec4<F>(select(front, n, -n), F(0.0f)), vec4<F>(albedo, F(1.0f))};
+    }
+};
+
+// A unit vector in two numbers (octahedral map), so that two of them fit a texel.
+template <class F>
+inline vec2<F> pack_unit(const vec3<F>& v) {
+    const F scale = F(1.0f) / (abs(v.x) + abs(v.y) + abs(v.z)), x = v.x * scale, y = v.y * scale;
+    const F folded_x = (F(1.0f) - abs(y)) * select(x < F(0.0f), F(-1.0f), F(1.0f)), folded_y = (F(1.0f) - abs(x)) * select(y < F(0.0f), F(-1.0f), F(1.0f));
+    const LaneMask<F> below = v.z < F(0.0f);
+    return {select(below, folded_x, x), select(below, folded_y, y)};
+}
+template <class F>
+inline vec3<F> unpack_unit(F x, F y) {
+    const F z = F(1.0f) - abs(x) - abs(y), fold = max(-z, F(0.0f));
+    return glm::normalize(vec3<F>(x + select(x < F(0.0f), fold, -fold), y + select(y < F(0.0f), fold, -fold), z));
+}
+
+// Specular surfaces: the shading normal and the triangle's, both as the mesh has them, packed.
+struct StoreNormals {
+    StructuredView<TriangleFacts> triangles;
+    template <class F>
+    vec4<F> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
+        const TriangleFacts<F> t = triangles.load<F>(as_int(pixel.primitive_id));
+        const vec2<F> n = pack_unit(glm::normalize(in.normal)), g = pack_unit(t.normal);
+        return vec4<F>(n.x, n.y, g.x, g.y);
+    }
+};
+
+// Light that a surface gives off by itself, W/(sr m^2).
+struct StoreEmission {
+    glm::vec3 emission;
+    template <class F>
+    vec4<F> operator()(const SurfaceVertex<F>&) const {
+        return vec4<F>(broadcast<F>(emission), F(0.0f));
+    }
+};
+
+}  // namespace nephroid::stages

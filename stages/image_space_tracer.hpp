@@ -8,7 +8,7 @@
 #include "pipeline/math.hpp"
 #include "stages/optics.hpp"
 #include "stages/receiver_map.hpp"
-#include "stages/solid_layers.hpp"
+#include "stages/solid_search.hpp"
 #include "stages/world.hpp"
 
 namespace nephroid::stages {
@@ -165,12 +165,10 @@ enum class Way : int {
 };
 
 struct ImageSpaceTracer {
-    SolidLayers solid;
+    SolidSearch search;  // of the object's next surface
     SpecularMaterial material;
     ReceiverSearch receivers;
     int bounces = 8;        // surfaces met, at most
-    int solid_steps = 16;   // walked through the object before halving
-    int solid_halvings = 8;
     bool light = true;      // follows light: interpolated normals need the adjoint correction, radiance no scaling
 
     template <class F>
@@ -232,9 +230,9 @@ struct ImageSpaceTracer {
         for (;; --bounces_left) {
             if (none(ray.active)) return;
             // The next surface of the solid, if any.
-            F distance;
-            SolidLayers::Depth<F> place;
-            const LaneMask<F> meets = ray.active & next_boundary(ray, distance, place);
+            const SolidSearch::Meeting<F> next = search.find(ray.position, ray.direction, ray.inside, ray.behind, ray.active);
+            const F distance = next.distance;
+            const LaneMask<F> meets = next.found;
 
             // A receiver may be nearer; not inside a solid that has another side.
             const LaneMask<F> open = ray.active & !(meets & ray.inside);
@@ -262,7 +260,7 @@ struct ImageSpaceTracer {
                 ray.active = LaneMask<F>(false);
                 return;
             }
-            const SolidLayers::Normals<F> normals = solid.normals_at(place.u, place.v, place.at_back);
+            const SolidLayers::Normals<F> normals = search.solid.normals_at(next.u, next.v, next.surface);
             const LaneMask<F> lost = goes_on & !normals.valid;
             ledger.drop(lost, ledger.missed);
             ray.active = goes_on & normals.valid;
@@ -288,56 +286,6 @@ private:
         vec3<F> transmittance;
         for (int c = 0; c < 3; ++c) transmittance[c] = exp(F(-material.attenuation[c]) * length);
         ray.ledger.scale(mask, transmittance, ray.ledger.absorbed);
-    }
-
-    // Positive inside, along the ray.
-    template <class F>
-    F inside_at(const Ray<F>& ray, F t) const {
-        const SolidLayers::Depth<F> d = solid.depth_at(ray.position + ray.direction * t);
-        return solid.closed ? d.inside : select(d.seen, d.inside * ray.behind, select(ray.inside, F(1.0f), F(-1.0f)));
-    }
-
-    // Where the ray next changes sides of the solid.
-    template <class F>
-    LaneMask<F> next_boundary(const Ray<F>& ray, F& distance, SolidLayers::Depth<F>& place) const {
-        const vec2<F> range = solid.through_bounds(ray.position, ray.direction);
-        const F leaves = range.y * F(1.0001f);
-        const LaneMask<F> looks = ray.active & (range.y > range.x) & (range.y > F(0.0f));
-        LaneMask<F> found(false);
-        distance = leaves;
-        place = SolidLayers::Depth<F>{F(-1.0f), LaneMask<F>(false), LaneMask<F>(false), F(0.0f), F(0.0f)};
-        if (none(looks)) return found;
-        const F enters = max(range.x, leaves * F(1e-4f)), span = leaves - enters;
-        F before = enters, behind = leaves, value_before(0.0f), value_behind(0.0f);
-        for (int i = 1; i <= solid_steps; ++i) {
-            const F t = enters + span * F(static_cast<float>(i) / static_cast<float>(solid_steps)), value = inside_at(ray, t);
-            const LaneMask<F> changed = ((value > F(0.0f)) ^ ray.inside) & !found & looks;
-            behind = select(changed, t, behind);
-            value_behind = select(changed, value, value_behind);
-            found = found | changed;
-            before = select(found, before, t);
-            value_before = select(found, value_before, value);
-            if (all(found | !looks)) break;
-        }
-        if (none(found)) return found;
-        for (int i = 0; i < solid_halvings; ++i) {
-            const F t = (before + behind) * F(0.5f), value = inside_at(ray, t);
-            const LaneMask<F> changed = (value > F(0.0f)) ^ ray.inside;
-            behind = select(changed, t, behind);
-            value_behind = select(changed, value, value_behind);
-            before = select(changed, before, t);
-            value_before = select(changed, value_before, value);
-        }
-        // Depths inside the silhouette are linear enough by now; beside it there is nothing to interpolate.
-        const F drop = value_before - value_behind, fraction = value_before / select(abs(drop) > F(1e-30f), drop, F(1.0f));
-        const LaneMask<F> linear = (value_before > F(-0.5f)) & (value_behind > F(-0.5f)) & (fraction >= F(0.0f)) & (fraction <= F(1.0f));
-        distance = before + (behind - before) * select(linear, fraction, F(0.5f));
-        // The layer is told from a point on the solid's side of the boundary.
-        place = solid.depth_at(ray.position + ray.direction * select(ray.inside, before, behind));
-        const SolidLayers::Depth<F> at = solid.depth_at(ray.position + ray.direction * distance);
-        place.u = at.u;
-        place.v = at.v;
-        return found;
     }
 };
 

@@ -40,10 +40,17 @@ enum PointSource { first, refracted, reflected, point_sources };
 // A specular object as a view sees it.
 struct LayerPictures {
     Texture front_depth, back_depth, front_normals, back_normals;
+    int layers = 0;  // that hold something
     LayerPictures() = default;
-    LayerPictures(int width, int height)
-        : front_depth(target(Format::D32F, width, height, "front depth")), back_depth(target(Format::D32F, width, height, "back depth")),
-          front_normals(target(Format::RGBA32F, width, height, "front normals")), back_normals(target(Format::RGBA32F, width, height, "back normals")) {}
+    LayerPictures(int width, int height, int layer_count) {
+        const auto array = [&](Format format, const char* name) {
+            return Texture({.format = format, .width = width, .height = height, .layers = layer_count, .kind = TextureKind::Texture2DArray, .name = name});
+        };
+        front_depth = array(Format::D32F, "front depth");
+        back_depth = array(Format::D32F, "back depth");
+        front_normals = array(Format::RGBA32F, "front normals");
+        back_normals = array(Format::RGBA32F, "back normals");
+    }
 };
 
 struct CausticPictures {
@@ -172,7 +179,7 @@ struct Renderer::Impl {
     void draw_depth_map(std::span<const View> views, const Texture& depth, const Texture& ids, bool with_specular);
     void shadow_map(const Light& light);
     void receiver_map(const Light& light);
-    void draw_layers(const View& view, int m, const LayerPictures& to);
+    void draw_layers(const View& view, int m, LayerPictures& to);
     void caster_pass(const Pass& pass);
     void photon_pass(const Pass& pass);
     void caustic_receivers(const Pass& pass);
@@ -217,7 +224,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
     shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
     if (any_specular) {
-        seen_layers = LayerPictures(width, height);
+        seen_layers = LayerPictures(width, height, settings.solid_layers);
         impostor_depth = layered(Format::D32F, settings.impostor_size, 6, "impostor depth");
         impostor_normals = layered(Format::RGBA32F, settings.impostor_size, 6, "impostor normals");
         impostor_albedo = layered(Format::RGBA8Srgb, settings.impostor_size, 6, "impostor albedo");
@@ -226,7 +233,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
         receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
         receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
-        caster_layers = LayerPictures(n, n);
+        caster_layers = LayerPictures(n, n, settings.solid_layers);
         occluders = target(Format::D32F, n, n, "occluders");
         accounts = target(Format::RGBA32F, n, n, "accounts");
         losses = target(Format::RGBA32F, n, n, "losses");
@@ -310,7 +317,7 @@ ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
 SolidLayers Renderer::Impl::solid(const View& view, int m, const LayerPictures& from) const {
     const Mesh& mesh = world.meshes[m];
     const glm::vec3 margin = glm::vec3(glm::length(mesh.high - mesh.low) * 1e-4f);
-    return {view, from.front_depth, from.back_depth, from.front_normals, from.back_normals, from.front_depth.width(), from.front_depth.height(), mesh.closed, mesh.low - margin, mesh.high + margin};
+    return {view, from.front_depth, from.back_depth, from.front_normals, from.back_normals, from.layers, from.front_depth.width(), from.front_depth.height(), mesh.closed, mesh.low - margin, mesh.high + margin};
 }
 
 SpecularMaterial Renderer::Impl::specular_material(int m) const {
@@ -341,16 +348,25 @@ void Renderer::Impl::receiver_map(const Light& light) {
     draw_depth_map(light.kind == LightKind::Directional ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), receiver_depth, receiver_ids, false);
 }
 
-void Renderer::Impl::draw_layers(const View& view, int m, const LayerPictures& to) {
+void Renderer::Impl::draw_layers(const View& view, int m, LayerPictures& to) {
     const Mesh& mesh = world.meshes[m];
-    const auto layer = [&](const Texture& depth, const Texture& normals, CullMode cull) {
-        clear(depth.mip());
-        draw(Program{ProjectSurface{view}, StoreNormals{mesh.triangles}}, state("object layer", cull, depth_greater),
-             {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = {normals.mip()}, .depth_target = depth.mip()});
+    // Draws the nearest faces behind a layer; true if there are any.
+    const auto peel = [&](const Texture& depth, const Texture& normals, int k, CullMode cull, const Texture* before, int before_layer) {
+        clear(depth.mip(0, k));
+        const std::uint64_t passed = statistics.samples_passed;
+        const StoreNormals shader{mesh.triangles, before ? Texture2DArrayView<Format::D32F>(*before) : Texture2DArrayView<Format::D32F>(), before_layer};
+        draw(Program{ProjectSurface{view}, shader}, state("object layer", cull, depth_greater),
+             {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = {normals.mip(0, k)}, .depth_target = depth.mip(0, k)});
+        return statistics.samples_passed > passed;
     };
-    layer(to.front_depth, to.front_normals, mesh.closed ? CullMode::Back : CullMode::None);
-    if (mesh.closed) layer(to.back_depth, to.back_normals, CullMode::Front);
-    else clear(to.back_depth.mip());
+    to.layers = 0;
+    for (int k = 0; k < settings.solid_layers; ++k) {
+        const bool any = peel(to.front_depth, to.front_normals, k, mesh.closed ? CullMode::Back : CullMode::None, k > 0 ? &to.back_depth : nullptr, k - 1);
+        if (!any && k > 0) return;
+        to.layers = k + 1;
+        if (!mesh.closed) return;
+        peel(to.back_depth, to.back_normals, k, CullMode::Front, &to.front_depth, k);
+    }
 }
 
 void Renderer::Impl::caster_pass(const Pass& pass) {
@@ -368,7 +384,7 @@ void Renderer::Impl::caster_pass(const Pass& pass) {
 void Renderer::Impl::photon_pass(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     mapping::TracePhotons photons;
-    photons.tracer.solid = caster;
+    photons.tracer.search.solid = caster;
     photons.tracer.material = specular_material(pass.mesh);
     photons.tracer.bounces = settings.bounces;
     ReceiverSearch& search = photons.tracer.receivers;
@@ -501,7 +517,7 @@ void Renderer::Impl::impostor(const Pass& pass) {
 
 void Renderer::Impl::trace_seen(const Pass& pass) {
     TraceSeen trace;
-    trace.tracer.solid = solid(eye(), pass.mesh, seen_layers);
+    trace.tracer.search.solid = solid(eye(), pass.mesh, seen_layers);
     trace.tracer.material = specular_material(pass.mesh);
     trace.tracer.bounces = settings.bounces;
     trace.tracer.light = false;

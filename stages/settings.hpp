@@ -17,6 +17,7 @@ struct Settings {
     int receiver_map_size = 1024, shadow_map_size = 1024, impostor_size = 512;
     float sprite_size = 3.0f;  // texels
     int bounces = 8;
+    int solid_layers = 4;      // pairs of front and back faces looked at per object; 1: as Wyman (2005)
     bool audit = true;         // keep the energy's accounts
     bool leave_out = true;     // passes that change nothing; off only to see that they do not
 };

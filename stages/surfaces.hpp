@@ -93,14 +93,22 @@ inline vec3<F> unpack_unit(F x, F y) {
     return glm::normalize(vec3<F>(x + select(x < F(0.0f), fold, -fold), y + select(y < F(0.0f), fold, -fold), z));
 }
 
-// Specular surfaces: the shading normal and the triangle's, both as the mesh has them, packed.
+// Specular surfaces: the shading normal and the triangle's, both as the mesh has them, packed. Only what lies behind a
+// layer that was drawn before, if there is one: depth peeling (Everitt 2001).
 struct StoreNormals {
     StructuredView<TriangleFacts> triangles;
+    Texture2DArrayView<Format::D32F> before;
+    int before_layer = -1;
     template <class F>
-    vec4<F> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
+    PixelOutput<F, 1> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
         const TriangleFacts<F> t = triangles.load<F>(as_int(pixel.primitive_id));
         const vec2<F> n = pack_unit(glm::normalize(in.normal)), g = pack_unit(t.normal);
-        return vec4<F>(n.x, n.y, g.x, g.y);
+        PixelOutput<F, 1> out{{vec4<F>(n.x, n.y, g.x, g.y)}};
+        if (before_layer >= 0) {
+            const F limit = before.fetch<F>(to_int_in_range(pixel.position.x), to_int_in_range(pixel.position.y), LaneInt<F>(before_layer)).x;
+            out.discard = pixel.position.z >= limit;
+        }
+        return out;
     }
 };
 

@@ -32,15 +32,15 @@ struct TracePhotons {
     // (emitted, absorbed, not followed, correction), (trapped, missed, 0, 0).
     template <class F>
     std::array<vec4<F>, 4> operator()(const PixelInput<F>& pixel) const {
-        const SolidLayers& solid = tracer.solid;
+        const SolidLayers& solid = tracer.search.solid;
         const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const F nearness = solid.front_depth.fetch<F>(x, y).x;
+        const F nearness = solid.front_depth.fetch<F>(x, y, LaneInt<F>(0)).x;
         const LaneMask<F> lit = (nearness > F(0.0f)) & (nearness > occluders.fetch<F>(x, y).x);
         if (none(lit)) return {};
         const F u = pixel.position.x * F(1.0f / static_cast<float>(solid.width)), v = pixel.position.y * F(1.0f / static_cast<float>(solid.height));
         const vec3<F> start = solid.view.position(u, v, nearness), direction = glm::normalize(solid.view.ray(u, v));
         const vec3<F> emitted = light.emission(start) * solid.view.texel_measure(u, v, solid.width, solid.height);
-        const vec4<F> packed = solid.front_normals.fetch<F>(x, y);
+        const vec4<F> packed = solid.front_normals.fetch<F>(x, y, LaneInt<F>(0));
         return trace(start, direction, emitted, unpack_unit(packed.x, packed.y), unpack_unit(packed.z, packed.w), lit);
     }
 

@@ -26,11 +26,11 @@ struct TraceVertexPhotons {
 
     template <class F>
     TracedPhoton<F> operator()(const WorldVertex<F>& v, const VertexIds<F>& ids) const {
-        const SolidLayers& solid = photons.tracer.solid;
+        const SolidLayers& solid = photons.tracer.search.solid;
         const View::Place<F> p = solid.view.place(v.position);
         // Lit if it is what the light's view shows there, to within a texel's slope.
         const LaneInt<F> x = to_int(p.u * F(static_cast<float>(solid.width))), y = to_int(p.v * F(static_cast<float>(solid.height)));
-        const F front = solid.front_depth.fetch<F>(x, y).x, tolerance = front * F(8.0f / static_cast<float>(solid.width));
+        const F front = solid.front_depth.fetch<F>(x, y, LaneInt<F>(0)).x, tolerance = front * F(8.0f / static_cast<float>(solid.width));
         const vec3<F> to_vertex = v.position - broadcast<F>(photons.light.position);
         const bool directional = photons.light.kind == LightKind::Directional;
         const vec3<F> direction = directional ? broadcast<F>(photons.light.direction) : glm::normalize(to_vertex);

@@ -53,15 +53,15 @@ struct TraceSeen {
     // Targets: position and id, normal, albedo times what the way leaves; radiance from the surroundings.
     template <class F>
     PixelOutput<F, 4> operator()(const PixelInput<F>& pixel) const {
-        const SolidLayers& solid = tracer.solid;
+        const SolidLayers& solid = tracer.search.solid;
         const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const F nearness = solid.front_depth.fetch<F>(x, y).x;
+        const F nearness = solid.front_depth.fetch<F>(x, y, LaneInt<F>(0)).x;
         const LaneMask<F> mine = (nearness > F(0.0f)) & (nearness >= eye_depth.fetch<F>(x, y).x);
         PixelOutput<F, 4> out{};
         out.discard = !mine;
         if (none(mine)) return out;
         const F u = pixel.position.x * F(1.0f / static_cast<float>(solid.width)), v = pixel.position.y * F(1.0f / static_cast<float>(solid.height));
-        const vec4<F> packed = solid.front_normals.fetch<F>(x, y);
+        const vec4<F> packed = solid.front_normals.fetch<F>(x, y, LaneInt<F>(0));
         const vec3<F> triangle = unpack_unit(packed.z, packed.w);
         ImageSpaceTracer::Ray<F> ray;
         ray.position = solid.view.position(u, v, nearness);

@@ -4,7 +4,8 @@
 
 namespace nephroid {
 
-void add_bench_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_plan_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
 
 }  // namespace nephroid

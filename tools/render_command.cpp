@@ -1,62 +1,152 @@
 // nephroid render: a scene to a picture.
+#include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
-#include "scenes/load.hpp"
-#include "stages/renderer.hpp"
+#include "pipeline/math.hpp"
 #include "tools/commands.hpp"
+#include "tools/debug_pixel.hpp"
+#include "tools/frame_statistics.hpp"
 #include "tools/picture_file.hpp"
-#include "tools/world_builder.hpp"
+#include "tools/progress.hpp"
+#include "tools/render_options.hpp"
+#include "tools/text_file.hpp"
 
 namespace nephroid {
 
 namespace {
 
 struct RenderArguments {
-    std::string scene = "glass-sphere", out;
-    std::string size;
-    int threads = 0, lanes = 0, samples = 1;
-    int photons = 1024, map_size = 1024, iterations = 12, bounces = 8;
-    std::string variant = "two-sided", intersection = "bisection";
-    float sprite = 3.0f, exposure = 0.0f;
-    bool layers = false, hash = false;
+    RenderOptions options;
+    std::string out, stats, frames, debug_pixel;
+    float orbit_light = 0, orbit_camera = 0, exposure = 0;
+    int runs = 1;
+    bool layers = false, hash = false, keep_idle = false;
 };
 
-void run(const RenderArguments& a) {
-    check_picture_path(a.out);
-    Device device({.threads = a.threads, .lanes = a.lanes});
-    const scenes::Scene scene = scenes::load_scene(a.scene);
-    for (const std::string& n : scene.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-    const BuiltWorld built = build_world(device, scene);
-    for (const std::string& n : built.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-    stages::Settings s;
-    std::sscanf(a.size.c_str(), "%dx%d", &s.width, &s.height);
-    s.photons = a.photons, s.map_size = a.map_size, s.iterations = a.iterations, s.bounces = a.bounces, s.samples_side = a.samples, s.sprite_size = a.sprite;
-    s.variant = a.variant == "tutorial" ? stages::mapping::Variant::Tutorial : a.variant == "vertices" ? stages::mapping::Variant::Vertices : stages::mapping::Variant::TwoSided;
-    s.intersection = a.intersection == "newton" ? stages::Intersection::Newton : a.intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
-    stages::Renderer renderer(device, built.world, s);
-    const Faults f = renderer.render();
-    char text[2000];
-    if (!f.empty()) f.format(text, sizeof text), throw std::runtime_error(text);
-    const stages::Picture p = renderer.picture();
-    PictureData out{s.width, s.height, {"R", "G", "B"}, {}};
-    if (a.layers)
-        for (const char* l : {"caustic", "direct", "emission"})
-            for (const char* c : {".R", ".G", ".B"}) out.channels.push_back(std::string(l) + c);
-    for (int y = 0; y < s.height; ++y) {
-        const float *d = reinterpret_cast<const float*>(p.direct->row(y)), *c = reinterpret_cast<const float*>(p.caustic->row(y)), *e = reinterpret_cast<const float*>(p.emission->row(y));
-        for (int x = 0; x < s.width; ++x, d += 4, c += 4, e += 4) {
-            for (int k = 0; k < 3; ++k) out.values.push_back((d[k] + c[k]) + e[k]);
-            if (a.layers)
-                for (const float* l : {c, d, e}) out.values.insert(out.values.end(), l, l + 3);
+double now_ms() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+void check(const Faults& faults) {
+    if (faults.empty()) return;
+    char text[4096];
+    faults.format(text, sizeof text);
+    throw std::runtime_error(text);
+}
+
+// "A:B", or nothing for a single picture.
+bool parse_frames(const std::string& text, int& first, int& last) {
+    if (text.empty()) return false;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%d:%d%c", &first, &last, &rest) != 2 || first < 0 || last < first || last > 999999) throw std::runtime_error("--frames: '" + text + "' is not FIRST:LAST");
+    return true;
+}
+
+// The frame's number in place of the #s of a name, or before its ending.
+std::string frame_name(const std::string& name, int frame) {
+    std::size_t first = name.find('#'), count = 0;
+    if (first == std::string::npos) first = name.find_last_of('.'), count = 0;
+    else while (first + count < name.size() && name[first + count] == '#') ++count;
+    char number[16];
+    std::snprintf(number, sizeof number, "%0*d", static_cast<int>(count == 0 ? 4 : count), frame);
+    std::string numbered = name.substr(0, first);
+    numbered += number;
+    numbered += name.substr(first + count);
+    return numbered;
+}
+
+// Turned about the vertical axis through `centre`.
+glm::vec3 turned(const glm::vec3& v, float angle) {
+    const float c = cos(angle), s = sin(angle);
+    return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
+}
+void place_frame(const stages::World& base, stages::World& world, int frame, float light_degrees, float camera_degrees) {
+    const glm::vec3 centre = (base.low + base.high) * 0.5f;
+    const float to_radians = 0.0174532925f, light = light_degrees * to_radians * static_cast<float>(frame), camera = camera_degrees * to_radians * static_cast<float>(frame);
+    for (std::size_t l = 0; l < world.lights.size(); ++l) {
+        world.lights[l].position = centre + turned(base.lights[l].position - centre, light);
+        world.lights[l].direction = turned(base.lights[l].direction, light);
+    }
+    world.camera.position = centre + turned(base.camera.position - centre, camera);
+    world.camera.right = turned(base.camera.right, camera);
+    world.camera.up = turned(base.camera.up, camera);
+    world.camera.forward = turned(base.camera.forward, camera);
+}
+
+PictureData picture_of(const stages::Picture& terms, bool layers) {
+    // The layers in the order in which a reader of EXR sorts them.
+    const std::pair<const char*, const Texture*> parts[] = {{"caustic", terms.caustic}, {"direct", terms.direct}, {"emission", terms.emission}};
+    PictureData p{terms.direct->width(), terms.direct->height(), {"R", "G", "B"}, {}};
+    if (layers)
+        for (const auto& [name, texture] : parts)
+            for (const char* c : {".R", ".G", ".B"}) p.channels.push_back(std::string(name) + c);
+    p.values.reserve(static_cast<std::size_t>(p.width) * p.height * p.channels.size());
+    for (int y = 0; y < p.height; ++y) {
+        const float *direct = reinterpret_cast<const float*>(terms.direct->row(y)), *caustic = reinterpret_cast<const float*>(terms.caustic->row(y)),
+                    *emission = reinterpret_cast<const float*>(terms.emission->row(y));
+        for (int x = 0; x < p.width; ++x, direct += 4, caustic += 4, emission += 4) {
+            for (int c = 0; c < 3; ++c) p.values.push_back((direct[c] + caustic[c]) + emission[c]);
+            if (!layers) continue;
+            for (const float* part : {caustic, direct, emission}) p.values.insert(p.values.end(), part, part + 3);
         }
     }
-    const std::string hash = write_picture(a.out, out, a.exposure);
-    if (a.hash) std::printf("%s\n", hash.c_str());
-    const stages::EnergyAudit& e = renderer.audit();
-    std::fprintf(stderr, "audit: emitted %.6g deposited %.6g absorbed %.6g not followed %.6g trapped %.6g missed %.6g beside %.6g correction %.6g imbalance %.2e\n", e.emitted, e.deposited, e.absorbed,
-                 e.not_followed, e.trapped, e.missed, e.beside, e.correction, e.imbalance());
-    for (std::size_t k = 0; k < renderer.records().size(); ++k) std::fprintf(stderr, "%9.2f ms  %s\n", renderer.records()[k].milliseconds, renderer.plan().passes[k].name.c_str());
+    return p;
+}
+
+void run(RenderArguments& a) {
+    int first_frame = 0, last_frame = 0;
+    const bool numbered = parse_frames(a.frames, first_frame, last_frame);
+    check_picture_path(a.out);
+    if (!a.stats.empty()) check_text_path(a.stats);
+    glm::ivec2 debug{-1};
+    char rest = 0;
+    if (!a.debug_pixel.empty() && (std::sscanf(a.debug_pixel.c_str(), "%d,%d%c", &debug.x, &debug.y, &rest) != 2 || debug.x < 0 || debug.y < 0))
+        throw std::runtime_error("--debug-pixel: '" + a.debug_pixel + "' is not COLUMN,ROW");
+
+    FrameTimes times;
+    const double load_start = now_ms();
+    Device device({.threads = a.options.threads, .lanes = a.options.lanes});
+    check(device.faults());
+    const scenes::Scene scene = load_for_render(a.options);
+    a.options.finish(scene);
+    a.options.settings.leave_out = !a.keep_idle;
+    if (debug.x >= a.options.settings.width || debug.y >= a.options.settings.height) throw std::runtime_error("--debug-pixel: lies outside the picture");
+    say_notes(scene.notes);
+    BuiltWorld built = build_world(device, scene);
+    say_notes(built.notes);
+    const std::vector<stages::Light> lights = built.world.lights;
+    const stages::Camera camera = built.world.camera;
+    times.load_ms = now_ms() - load_start;
+
+    const double prepare_start = now_ms();
+    stages::Renderer renderer(device, built.world, a.options.settings);
+    check(renderer.faults());
+    times.prepare_ms = now_ms() - prepare_start;
+    Progress progress;
+    renderer.listen(&progress);
+    DebugPixel observer(debug * a.options.settings.samples_side);
+    if (debug.x >= 0) renderer.observe(&observer);
+
+    stages::World base;  // lights and camera as loaded
+    base.lights = lights;
+    base.camera = camera;
+    base.low = built.world.low;
+    base.high = built.world.high;
+    std::string hash;
+    for (int frame = first_frame; frame <= last_frame; ++frame) {
+        if (numbered) place_frame(base, built.world, frame, a.orbit_light, a.orbit_camera);
+        for (int r = 0; r < a.runs; ++r) {
+            const double start = now_ms();
+            check(renderer.render());
+            times.render_ms.push_back(now_ms() - start + (times.render_ms.empty() ? times.prepare_ms : 0));
+        }
+        const double write_start = now_ms();
+        hash = write_picture(numbered ? frame_name(a.out, frame) : a.out, picture_of(renderer.picture(), a.layers), a.exposure);
+        times.write_ms += now_ms() - write_start;
+        if (a.hash) std::printf("%s\n", hash.c_str());
+    }
+    if (!a.stats.empty()) write_text(a.stats, statistics_json(a.options, device, renderer, times, hash));
 }
 
 }  // namespace
@@ -64,22 +154,18 @@ void run(const RenderArguments& a) {
 void add_render_command(CLI::App& app) {
     const auto a = std::make_shared<RenderArguments>();
     CLI::App* c = app.add_subcommand("render", "Render a scene to a picture");
-    c->add_option("scene", a->scene);
-    c->add_option("-o,--output", a->out)->required();
-    c->add_option("--size", a->size);
-    c->add_option("--threads", a->threads);
-    c->add_option("--lanes", a->lanes);
-    c->add_option("--samples", a->samples);
-    c->add_option("--photons", a->photons);
-    c->add_option("--map-size", a->map_size);
-    c->add_option("--iterations", a->iterations);
-    c->add_option("--bounces", a->bounces);
-    c->add_option("--variant", a->variant);
-    c->add_option("--intersection", a->intersection);
-    c->add_option("--sprite", a->sprite);
-    c->add_option("--exposure", a->exposure);
-    c->add_flag("--layers", a->layers);
-    c->add_flag("--hash", a->hash);
+    a->options.add_to(*c);
+    c->add_option("-o,--output", a->out, "The picture: .exr, .png, .tif or .hdr")->required()->type_name("FILE");
+    c->add_flag("--layers", a->layers, "EXR and TIFF: each term of the picture apart, too (caustic.R ..., direct.R ..., emission.R ...)");
+    c->add_option("--exposure", a->exposure, "PNG: brighter by this many stops")->check(CLI::Range(-64.0f, 64.0f))->capture_default_str();
+    c->add_flag("--hash", a->hash, "Print the SHA-1 of the picture's pixels");
+    c->add_option("--stats", a->stats, "Write times, memory, statistics and the energy audit as JSON")->type_name("FILE");
+    c->add_option("--runs", a->runs, "Render so often; times are medians")->check(CLI::Range(1, 10000))->capture_default_str();
+    c->add_option("--frames", a->frames, "Render frames FIRST to LAST; #s in the output's name become the number")->type_name("FIRST:LAST");
+    c->add_option("--orbit-light", a->orbit_light, "Degrees that the lights turn about the vertical axis per frame")->capture_default_str();
+    c->add_option("--orbit-camera", a->orbit_camera, "Degrees that the camera turns about the vertical axis per frame")->capture_default_str();
+    c->add_option("--debug-pixel", a->debug_pixel, "Run on one thread and lane, and call nephroid_debug_pixel() before every pixel-stage invocation there")->type_name("COLUMN,ROW");
+    c->add_flag("--keep-idle-passes", a->keep_idle, "Run passes that the plan would leave out; the picture is the same");
     c->callback([a] { run(*a); });
 }
 

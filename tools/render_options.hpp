@@ -1,0 +1,33 @@
+// The options that `render` and `plan` share: which scene, and how it is to be drawn.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "scenes/scene.hpp"
+#include "stages/settings.hpp"
+#include "tools/world_builder.hpp"
+
+namespace nephroid {
+
+struct RenderOptions {
+    std::string scene;  // empty: the first bundled one
+    std::string environment, medium;
+    std::string technique = "mapping", variant = "two-sided", tracing = "image-space", intersection = "bisection";
+    std::string size;       // "WxH"; empty: 768 high, as wide as the camera's aspect says
+    std::string photons = "1024^2";
+    int samples = 1, threads = 0, lanes = 0;
+    stages::Settings settings;
+
+    // Adds the options; what they say is complete only after finish().
+    void add_to(CLI::App& command);
+    // Checks the texts and fills the settings; the scene decides a size that was not given. Throws std::runtime_error.
+    void finish(const scenes::Scene& scene);
+};
+
+// Loads the scene with the environment and medium that were asked for. Throws.
+scenes::Scene load_for_render(const RenderOptions& options);
+
+// Writes what a scene or world had to make up or leave out to standard error, each once.
+void say_notes(const std::vector<std::string>& notes);
+
+}  // namespace nephroid

@@ -25,9 +25,11 @@ LaneUint<F> load_narrow(const Narrow* at) {
     if constexpr (lanes_of<F> == 1) {
         return *at;
     } else {
+        // Bytes in two steps: compilers know how to double a width, and take quadrupling apart into single bytes.
         typename NativeVector<Narrow, lanes_of<F>>::type v;
         std::memcpy(&v, at, sizeof v);
-        return LaneUint<F>(__builtin_convertvector(v, typename LaneUint<F>::Native));
+        const auto words = __builtin_convertvector(v, typename NativeVector<std::uint16_t, lanes_of<F>>::type);
+        return LaneUint<F>(__builtin_convertvector(words, typename LaneUint<F>::Native));
     }
 }
 template <class F, class Narrow>
@@ -35,7 +37,8 @@ void store_narrow(Narrow* at, LaneUint<F> value) {
     if constexpr (lanes_of<F> == 1) {
         *at = static_cast<Narrow>(value);
     } else {
-        const auto v = __builtin_convertvector(value.v, typename NativeVector<Narrow, lanes_of<F>>::type);
+        const auto words = __builtin_convertvector(value.v, typename NativeVector<std::uint16_t, lanes_of<F>>::type);
+        const auto v = __builtin_convertvector(words, typename NativeVector<Narrow, lanes_of<F>>::type);
         std::memcpy(at, &v, sizeof v);
     }
 }

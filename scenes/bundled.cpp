@@ -36,7 +36,8 @@ int add_mirror(Scene& scene, const char* name, const glm::vec3& color) {
 
 void add_table(Scene& scene, float half_width) {
     const float s = half_width;
-    scene.meshes.push_back(make_quad("table", add_lambert(scene, "table", white), {-s, 0.0f, s}, {s, 0.0f, s}, {s, 0.0f, -s}, {-s, 0.0f, -s}));
+    scene.meshes.push_back(
+        make_quad("table", add_lambert(scene, "table", white), {-s, 0.0f, s}, {s, 0.0f, s}, {s, 0.0f, -s}, {-s, 0.0f, -s}));
 }
 
 void add_camera(Scene& scene, const glm::vec3& eye, const glm::vec3& target, float vertical_fov) {
@@ -95,7 +96,9 @@ Scene mirror_ring() {
     constexpr glm::vec2 out{1.0f, 0.0f}, in{-1.0f, 0.0f}, up{0.0f, 1.0f}, down{0.0f, -1.0f};
     constexpr int steps = 16;
     std::vector<OutlinePoint> outline{{inner, bottom, down}, {outer, bottom, down}};
-    const auto height = [&](int k) { return k == steps ? top : bottom + (top - bottom) * (static_cast<float>(k) / static_cast<float>(steps)); };
+    const auto height = [&](int k) {
+        return k == steps ? top : bottom + (top - bottom) * (static_cast<float>(k) / static_cast<float>(steps));
+    };
     for (int k = 0; k <= steps; ++k) outline.push_back({outer, height(k), out});
     outline.push_back({outer, top, up});
     outline.push_back({inner, top, up});
@@ -108,9 +111,14 @@ Scene mirror_ring() {
 }
 
 // Eight waves, 0.4 to 1.4 m long, of equal curvature: together their crests focus sunlight about a metre down.
-constexpr std::array<Wave, 8> ripples{{
-    {0.0346f, {3.95f, 2.16f}, 0.0f}, {0.0194f, {-5.83f, 1.44f}, 1.7f}, {0.0124f, {4.16f, -6.24f}, 3.4f}, {0.0086f, {1.38f, 8.89f}, 5.1f},
-    {0.0063f, {-8.20f, -6.56f}, 0.5f}, {0.0049f, {11.97f, -0.80f}, 2.2f}, {0.0036f, {-9.67f, 10.12f}, 3.9f}, {0.0027f, {0.34f, -16.00f}, 5.6f}}};
+constexpr std::array<Wave, 8> ripples{{{0.0346f, {3.95f, 2.16f}, 0.0f},
+                                       {0.0194f, {-5.83f, 1.44f}, 1.7f},
+                                       {0.0124f, {4.16f, -6.24f}, 3.4f},
+                                       {0.0086f, {1.38f, 8.89f}, 5.1f},
+                                       {0.0063f, {-8.20f, -6.56f}, 0.5f},
+                                       {0.0049f, {11.97f, -0.80f}, 2.2f},
+                                       {0.0036f, {-9.67f, 10.12f}, 3.9f},
+                                       {0.0027f, {0.34f, -16.00f}, 5.6f}}};
 
 int add_water(Scene& scene) {
     const int water = add_glass(scene, "water", 1.33f);
@@ -191,10 +199,11 @@ Scene wine_glass() {
     material.attenuation_color = {0.9f, 0.15f, 0.2f};
     material.attenuation_distance = 0.05f;
     // Foot, stem, outer wall, rim, inner wall: one closed outline.
-    constexpr std::array<glm::vec2, 24> points{{{0.0f, 0.003f},   {0.10f, 0.003f},  {0.188f, 0.004f}, {0.1945f, 0.009f}, {0.188f, 0.014f}, {0.10f, 0.028f},
-                                                {0.035f, 0.060f}, {0.018f, 0.12f},  {0.015f, 0.20f},  {0.022f, 0.27f},  {0.07f, 0.32f},   {0.14f, 0.38f},
-                                                {0.18f, 0.47f},   {0.175f, 0.57f},  {0.15f, 0.68f},   {0.1465f, 0.684f}, {0.143f, 0.68f}, {0.1665f, 0.57f},
-                                                {0.1715f, 0.47f}, {0.132f, 0.388f}, {0.10f, 0.358f},  {0.065f, 0.336f}, {0.03f, 0.324f},  {0.0f, 0.32f}}};
+    constexpr std::array<glm::vec2, 24> points{{{0.0f, 0.003f},    {0.10f, 0.003f},  {0.188f, 0.004f}, {0.1945f, 0.009f}, {0.188f, 0.014f},
+                                                {0.10f, 0.028f},   {0.035f, 0.060f}, {0.018f, 0.12f},  {0.015f, 0.20f},   {0.022f, 0.27f},
+                                                {0.07f, 0.32f},    {0.14f, 0.38f},   {0.18f, 0.47f},   {0.175f, 0.57f},   {0.15f, 0.68f},
+                                                {0.1465f, 0.684f}, {0.143f, 0.68f},  {0.1665f, 0.57f}, {0.1715f, 0.47f},  {0.132f, 0.388f},
+                                                {0.10f, 0.358f},   {0.065f, 0.336f}, {0.03f, 0.324f},  {0.0f, 0.32f}}};
     scene.meshes.push_back(make_revolution("wine glass", red, {0.0f, 0.004f, 0.0f}, smooth_outline(points, 6), 96));
     add_point_light(scene, {-1.6f, 1.5f, 0.5f}, 25.0f);
     add_camera(scene, {0.45f, 0.95f, 1.7f}, {0.2f, 0.25f, 0.0f}, 0.65f);
@@ -219,9 +228,15 @@ struct Entry {
     std::string_view name;
     Scene (*make)();
 };
-constexpr std::array entries{Entry{"glass-sphere", glass_sphere}, Entry{"mirror-ring", mirror_ring}, Entry{"pool", pool},
-                             Entry{"glass-torus", glass_torus}, Entry{"sphere-in-fog", sphere_in_fog}, Entry{"sphere-above-water", sphere_above_water},
-                             Entry{"prism", prism}, Entry{"wine-glass", wine_glass}, Entry{"closed-box", closed_box}};
+constexpr std::array entries{Entry{"glass-sphere", glass_sphere},
+                             Entry{"mirror-ring", mirror_ring},
+                             Entry{"pool", pool},
+                             Entry{"glass-torus", glass_torus},
+                             Entry{"sphere-in-fog", sphere_in_fog},
+                             Entry{"sphere-above-water", sphere_above_water},
+                             Entry{"prism", prism},
+                             Entry{"wine-glass", wine_glass},
+                             Entry{"closed-box", closed_box}};
 
 }  // namespace
 

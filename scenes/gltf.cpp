@@ -12,6 +12,7 @@
 #include "scenes/gltf_nodes.hpp"
 #include "scenes/gltf_schema.hpp"
 #include "scenes/image_file.hpp"
+#include "scenes/medium_json.hpp"
 #include "scenes/placement.hpp"
 #include "scenes/tinygltf.hpp"
 
@@ -23,7 +24,12 @@ namespace {
 class ModelReader {
 public:
     ModelReader(const Document& document, const Container& container, const std::filesystem::path& folder, Scene& scene, Context& context)
-        : document_(document), container_(container), files_(folder, context), scene_(scene), context_(context), image_of_(document.image_uris.size(), -1) {}
+        : document_(document),
+          container_(container),
+          files_(folder, context),
+          scene_(scene),
+          context_(context),
+          image_of_(document.image_uris.size(), -1) {}
 
     tinygltf::Model read() {
         tinygltf::TinyGLTF loader;
@@ -32,7 +38,8 @@ public:
         tinygltf::Model model;
         std::string errors, warnings;
         const std::string& json = document_.json;
-        if (!loader.LoadASCIIFromString(&model, &errors, &warnings, json.data(), static_cast<unsigned>(json.size()), "", tinygltf::NO_REQUIRE))
+        if (!loader.LoadASCIIFromString(&model, &errors, &warnings, json.data(), static_cast<unsigned>(json.size()), "",
+                                        tinygltf::NO_REQUIRE))
             context_.refuse("glTF", errors.empty() ? "tinygltf cannot read it" : errors);
         return model;
     }
@@ -56,7 +63,8 @@ private:
     static bool read_whole_file(std::vector<unsigned char>* out, std::string*, const std::string& name, void* reader) {
         return static_cast<ModelReader*>(reader)->read_resource(name, *out);
     }
-    static bool decode_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size, void* reader) {
+    static bool decode_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
+                             void* reader) {
         static_cast<ModelReader*>(reader)->decode(static_cast<std::size_t>(index), {bytes, static_cast<std::size_t>(size)});
         return true;
     }
@@ -71,10 +79,13 @@ private:
         const std::string object = label("buffer", index);
         const std::size_t size = document_.buffer_sizes[index];
         const std::string& uri = document_.buffer_uris[index];
-        if (!uri.empty() || !container_.has_binary || index != 0) bytes = files_.read(uri, object);
-        else bytes.assign(reinterpret_cast<const unsigned char*>(container_.binary.data()),
-                          reinterpret_cast<const unsigned char*>(container_.binary.data()) + container_.binary.size());
-        if (bytes.size() < size) context_.refuse(object, "it has " + std::to_string(bytes.size()) + " bytes, byteLength says " + std::to_string(size));
+        if (!uri.empty() || !container_.has_binary || index != 0)
+            bytes = files_.read(uri, object);
+        else
+            bytes.assign(reinterpret_cast<const unsigned char*>(container_.binary.data()),
+                         reinterpret_cast<const unsigned char*>(container_.binary.data()) + container_.binary.size());
+        if (bytes.size() < size)
+            context_.refuse(object, "it has " + std::to_string(bytes.size()) + " bytes, byteLength says " + std::to_string(size));
         bytes.resize(size);  // more is allowed, and tinygltf takes exactly as many
         return true;
     }
@@ -124,13 +135,16 @@ public:
         for (const PlacedNode& node : placed)
             if (const int mesh = get(node).mesh; mesh >= 0) ++uses[static_cast<std::size_t>(mesh)];
         for (const PlacedNode& node : placed) {
-            if (const int mesh = get(node).mesh; mesh >= 0) add_mesh(node, static_cast<std::size_t>(mesh), uses[static_cast<std::size_t>(mesh)] > 1);
+            if (const int mesh = get(node).mesh; mesh >= 0)
+                add_mesh(node, static_cast<std::size_t>(mesh), uses[static_cast<std::size_t>(mesh)] > 1);
             if (get(node).camera >= 0) {
-                if (scene_.cameras.size() >= context_.limits.cameras) context_.refuse("glTF", "the scene has more than " + std::to_string(context_.limits.cameras) + " cameras");
+                if (scene_.cameras.size() >= context_.limits.cameras)
+                    context_.refuse("glTF", "the scene has more than " + std::to_string(context_.limits.cameras) + " cameras");
                 scene_.cameras.push_back(read_camera(model_, node, context_));
             }
             if (const int light = light_of(get(node)); light >= 0) {
-                if (scene_.lights.size() >= context_.limits.lights) context_.refuse("glTF", "the scene has more than " + std::to_string(context_.limits.lights) + " lights");
+                if (scene_.lights.size() >= context_.limits.lights)
+                    context_.refuse("glTF", "the scene has more than " + std::to_string(context_.limits.lights) + " lights");
                 scene_.lights.push_back(read_light(model_, node, light, context_));
             }
         }
@@ -163,11 +177,17 @@ private:
             const std::string object = label("node", static_cast<std::size_t>(placed.node), get(placed).name);
             vertices_ += (*geometry)->positions.size();
             triangles_ += (*geometry)->indices.size() / 3;
-            if (scene_.meshes.size() >= context_.limits.meshes) context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.meshes) + " meshes");
-            if (vertices_ > context_.limits.vertices) context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.vertices) + " vertices");
-            if (triangles_ > context_.limits.triangles) context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.triangles) + " triangles");
+            if (scene_.meshes.size() >= context_.limits.meshes)
+                context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.meshes) + " meshes");
+            if (vertices_ > context_.limits.vertices)
+                context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.vertices) + " vertices");
+            if (triangles_ > context_.limits.triangles)
+                context_.refuse(object, "the scene has more than " + std::to_string(context_.limits.triangles) + " triangles");
             Mesh result = place(**geometry, placed.world_from_node, object, context_);
-            result.name = one_line(!get(placed).name.empty() ? get(placed).name : !source.name.empty() ? source.name : label("mesh", mesh), 200);
+            result.name = one_line(!get(placed).name.empty() ? get(placed).name
+                                   : !source.name.empty()    ? source.name
+                                                             : label("mesh", mesh),
+                                   200);
             result.material = material(source.primitives[primitive].material);
             scene_.meshes.push_back(std::move(result));
         }
@@ -206,11 +226,7 @@ Scene read(Bytes bytes, const std::filesystem::path& folder, Context& context) {
     const tinygltf::Model model = reader.read();
     SceneBuilder(model, document, scene, context).build(reader.image_of());
     if (scene.meshes.empty()) context.refuse("scene", "it has no triangles to draw");
-    for (const Medium& medium : scene.media) {
-        bool found = medium.inside.empty();
-        for (const Mesh& mesh : scene.meshes) found = found || mesh.name == medium.inside;
-        if (!found) context.refuse("medium", "it is inside " + quoted(medium.inside) + ", and no node with a mesh has that name");
-    }
+    check_media(scene, context);
     scene.notes = std::move(context.notes);
     add_receiver(scene);
     complete(scene);
@@ -220,7 +236,8 @@ Scene read(Bytes bytes, const std::filesystem::path& folder, Context& context) {
 }  // namespace
 }  // namespace gltf
 
-Scene load_gltf_memory(std::span<const std::byte> bytes, const std::string& name, const std::filesystem::path& folder, const Limits& limits) {
+Scene load_gltf_memory(std::span<const std::byte> bytes, const std::string& name, const std::filesystem::path& folder,
+                       const Limits& limits) {
     gltf::Context context(name, limits);
     try {
         if (bytes.size() > limits.file_bytes) context.refuse("", "the file is larger than " + std::to_string(limits.file_bytes) + " bytes");
@@ -237,7 +254,8 @@ Scene load_gltf_memory(std::span<const std::byte> bytes, const std::string& name
 Scene load_gltf(const std::string& path, const Limits& limits) {
     const gltf::Context context(path, limits);
     const std::vector<unsigned char> bytes = gltf::read_file(path, "", context);
-    return load_gltf_memory(std::as_bytes(std::span(bytes)), path, std::filesystem::absolute(path).parent_path(), limits);
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    return load_gltf_memory(std::as_bytes(std::span(bytes)), path, folder.empty() ? "." : folder, limits);
 }
 
 }  // namespace nephroid::scenes

@@ -21,6 +21,7 @@ Scene load_gltf(const std::string& path, const Limits& limits = {});
 
 // The same from memory. `name` stands for the file in messages; URIs are looked up in `folder`, and where that is empty
 // only data: URIs are read and no file is ever opened.
-Scene load_gltf_memory(std::span<const std::byte> bytes, const std::string& name, const std::filesystem::path& folder = {}, const Limits& limits = {});
+Scene load_gltf_memory(std::span<const std::byte> bytes, const std::string& name, const std::filesystem::path& folder = {},
+                       const Limits& limits = {});
 
 }  // namespace nephroid::scenes

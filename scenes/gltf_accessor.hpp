@@ -18,7 +18,8 @@ enum class Integers {
 
 // `components` floats for each element; normalized integers become [0, 1] or [-1, 1]. NaN and infinities are refused.
 // `use` is what the accessor is for ("POSITION"), for messages.
-std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, Integers integers, const char* use, Context& context);
+std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, Integers integers, const char* use,
+                               Context& context);
 
 // Unsigned integers of 8, 16 or 32 bits.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor, Context& context);

@@ -21,8 +21,10 @@ void scan_json(std::string_view json, const Context& context) {
     for (std::size_t k = 0; k < json.size(); ++k) {
         const char c = json[k];
         if (in_string) {
-            if (c == '\\') ++k;
-            else if (c == '"') in_string = false;
+            if (c == '\\')
+                ++k;
+            else if (c == '"')
+                in_string = false;
         } else if (c == '"') {
             in_string = true;
         } else if (c == '[' || c == '{') {
@@ -35,7 +37,8 @@ void scan_json(std::string_view json, const Context& context) {
             ++values;
         }
     }
-    if (values > context.limits.json_values) context.refuse("JSON", "it holds more than " + std::to_string(context.limits.json_values) + " values");
+    if (values > context.limits.json_values)
+        context.refuse("JSON", "it holds more than " + std::to_string(context.limits.json_values) + " values");
 }
 
 }  // namespace
@@ -52,7 +55,8 @@ Container open_container(Bytes bytes, const Context& context) {
     }
 
     if (bytes.size() < header_size) context.refuse("GLB header", "it must have 12 bytes");
-    if (const std::uint32_t version = read_u32(bytes, 4); version != 2) context.refuse("GLB header", "version " + std::to_string(version) + " is not 2");
+    if (const std::uint32_t version = read_u32(bytes, 4); version != 2)
+        context.refuse("GLB header", "version " + std::to_string(version) + " is not 2");
     const std::size_t length = read_u32(bytes, 8);
     if (length > bytes.size())
         context.refuse("GLB header", "it says " + std::to_string(length) + " bytes, the file has " + std::to_string(bytes.size()));

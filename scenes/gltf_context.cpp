@@ -5,10 +5,13 @@
 namespace nephroid::scenes::gltf {
 
 void Context::note(const std::string& sentence) {
+    if (notes.size() > limits.notes) return;
     const std::string line = one_line(sentence, 300);
     if (std::find(notes.begin(), notes.end(), line) != notes.end()) return;
-    if (notes.size() < limits.notes) notes.push_back(line);
-    else if (notes.size() == limits.notes) notes.push_back("There are more notes than these.");
+    if (notes.size() < limits.notes)
+        notes.push_back(line);
+    else
+        notes.push_back("There are more notes than these.");
 }
 
 void Context::count_elements(const std::string& object, std::uint64_t elements) {

@@ -69,7 +69,8 @@ Counts read_header(std::span<const unsigned char> data, const std::string& objec
     for (const char c : {'D', 'R', 'A', 'C', 'O'})
         if (reader.byte() != static_cast<unsigned char>(c)) context.refuse(object, "its compressed data are not Draco's");
     const int major = reader.byte(), minor = reader.byte();
-    if (major != 2 || minor != 2) context.refuse(object, "Draco bitstream " + std::to_string(major) + "." + std::to_string(minor) + " is not 2.2");
+    if (major != 2 || minor != 2)
+        context.refuse(object, "Draco bitstream " + std::to_string(major) + "." + std::to_string(minor) + " is not 2.2");
     const int type = reader.byte(), method = reader.byte();
     if (type != draco::TRIANGULAR_MESH) context.refuse(object, "its Draco data are not a mesh");
     const int flags_low = reader.byte(), flags = flags_low | reader.byte() << 8;
@@ -93,12 +94,14 @@ Counts read_header(std::span<const unsigned char> data, const std::string& objec
     return counts;
 }
 
-std::vector<float> read_attribute(const draco::Mesh& mesh, int id, int components, const char* use, const std::string& object, const Context& context) {
+std::vector<float> read_attribute(const draco::Mesh& mesh, int id, int components, const char* use, const std::string& object,
+                                  const Context& context) {
     if (id < 0) return {};
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
     if (!attribute) context.refuse(object, std::string("its Draco data have no attribute ") + std::to_string(id) + " (" + use + ")");
     if (attribute->num_components() != components)
-        context.refuse(object, std::string("its Draco attribute ") + use + " has " + std::to_string(attribute->num_components()) + " components");
+        context.refuse(object,
+                       std::string("its Draco attribute ") + use + " has " + std::to_string(attribute->num_components()) + " components");
     const std::size_t width = static_cast<std::size_t>(components);
     std::vector<float> values(mesh.num_points() * width);
     for (std::uint32_t k = 0; k < mesh.num_points(); ++k) {
@@ -107,7 +110,8 @@ std::vector<float> read_attribute(const draco::Mesh& mesh, int id, int component
         if (index.value() >= attribute->size() || !attribute->ConvertValue<float>(index, static_cast<std::int8_t>(components), out))
             context.refuse(object, std::string("its Draco attribute ") + use + " lacks values");
         for (std::size_t c = 0; c < width; ++c)
-            if (!std::isfinite(out[c])) context.refuse(object, std::string("Draco attribute ") + use + ", vertex " + std::to_string(k) + " is not a finite number");
+            if (!std::isfinite(out[c]))
+                context.refuse(object, std::string("Draco attribute ") + use + ", vertex " + std::to_string(k) + " is not a finite number");
     }
     return values;
 }
@@ -117,11 +121,14 @@ std::vector<float> read_attribute(const draco::Mesh& mesh, int id, int component
 DracoMesh decode_draco(std::span<const unsigned char> data, const DracoIds& ids, const std::string& object, Context& context) {
     const Counts counts = read_header(data, object, context);
     if (counts.vertices > context.limits.vertices || counts.faces > context.limits.triangles)
-        context.refuse(object, "its Draco header says " + std::to_string(counts.vertices) + " vertices and " + std::to_string(counts.faces) + " triangles, which is beyond the limits");
+        context.refuse(object, "its Draco header says " + std::to_string(counts.vertices) + " vertices and " +
+                                   std::to_string(counts.faces) + " triangles, which is beyond the limits");
     // The densest meshes (flat grids) take a few hundredths of a byte for a triangle. What claims a hundred times less
     // than that is made to exhaust memory.
     constexpr std::uint64_t faces_for_each_byte = 1024;
-    if (counts.faces > faces_for_each_byte * data.size()) context.refuse(object, "its Draco header says " + std::to_string(counts.faces) + " triangles in " + std::to_string(data.size()) + " bytes");
+    if (counts.faces > faces_for_each_byte * data.size())
+        context.refuse(object,
+                       "its Draco header says " + std::to_string(counts.faces) + " triangles in " + std::to_string(data.size()) + " bytes");
     context.count_elements(object, std::uint64_t{3} * counts.faces + counts.vertices);
 
     draco::DecoderBuffer buffer;
@@ -130,7 +137,8 @@ DracoMesh decode_draco(std::span<const unsigned char> data, const DracoIds& ids,
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) context.refuse(object, "Draco cannot decode it: " + decoded.status().error_msg_string());
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    if (mesh->num_points() > context.limits.vertices || mesh->num_faces() > context.limits.triangles) context.refuse(object, "its decoded Draco mesh is beyond the limits");
+    if (mesh->num_points() > context.limits.vertices || mesh->num_faces() > context.limits.triangles)
+        context.refuse(object, "its decoded Draco mesh is beyond the limits");
 
     DracoMesh result;
     result.positions = read_attribute(*mesh, ids.position, 3, "POSITION", object, context);

@@ -36,12 +36,18 @@ bool decode_base64(std::string_view text, std::vector<unsigned char>& bytes) {
     int bit_count = 0;
     for (const char c : text) {
         int digit = 0;
-        if (c >= 'A' && c <= 'Z') digit = c - 'A';
-        else if (c >= 'a' && c <= 'z') digit = c - 'a' + 26;
-        else if (c >= '0' && c <= '9') digit = c - '0' + 52;
-        else if (c == '+' || c == '-') digit = 62;
-        else if (c == '/' || c == '_') digit = 63;
-        else return false;
+        if (c >= 'A' && c <= 'Z')
+            digit = c - 'A';
+        else if (c >= 'a' && c <= 'z')
+            digit = c - 'a' + 26;
+        else if (c >= '0' && c <= '9')
+            digit = c - '0' + 52;
+        else if (c == '+' || c == '-')
+            digit = 62;
+        else if (c == '/' || c == '_')
+            digit = 63;
+        else
+            return false;
         bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffffu;
         bit_count += 6;
         if (bit_count >= 8) {
@@ -71,7 +77,8 @@ std::vector<unsigned char> read_file(const fs::path& path, const std::string& ob
     if (!fs::is_regular_file(status)) context.refuse(object, "not a regular file: " + path.filename().string());
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) context.refuse(object, "cannot be read: " + error.message());
-    if (size > context.limits.file_bytes) context.refuse(object, "the file is larger than " + std::to_string(context.limits.file_bytes) + " bytes");
+    if (size > context.limits.file_bytes)
+        context.refuse(object, "the file is larger than " + std::to_string(context.limits.file_bytes) + " bytes");
     std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
     std::ifstream in(path, std::ios::binary);
     if (!bytes.empty()) in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -109,7 +116,8 @@ std::vector<unsigned char> Files::read(const std::string& uri, const std::string
         const std::size_t comma = uri.find(',');
         const std::string_view header = std::string_view(uri).substr(0, comma);
         if (comma == std::string::npos || !header.ends_with(";base64")) context_.refuse(object, "its data: uri is not base64");
-        if (!decode_base64(std::string_view(uri).substr(comma + 1), bytes)) context_.refuse(object, "its data: uri has characters that are not base64");
+        if (!decode_base64(std::string_view(uri).substr(comma + 1), bytes))
+            context_.refuse(object, "its data: uri has characters that are not base64");
     } else {
         bytes = read_file(resolve(uri, object), object, context_);
     }

@@ -26,8 +26,8 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 
 std::string texcoord_name(int set) { return "TEXCOORD_" + std::to_string(set); }
 
-Source read_compressed(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const tinygltf::Value& extension, const GeometryRequest& request,
-                       const std::string& object, Context& context) {
+Source read_compressed(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const tinygltf::Value& extension,
+                       const GeometryRequest& request, const std::string& object, Context& context) {
     // gltf_schema has checked the types and the range of bufferView.
     const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(extension.Get("bufferView").GetNumberAsInt())];
     const std::vector<unsigned char>& buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
@@ -44,14 +44,16 @@ Source read_compressed(const tinygltf::Model& model, const tinygltf::Primitive& 
     return {std::move(mesh.positions), std::move(mesh.normals), std::move(mesh.texcoords), std::move(mesh.indices)};
 }
 
-Source read_plain(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const GeometryRequest& request, const std::string& object, Context& context) {
+Source read_plain(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const GeometryRequest& request,
+                  const std::string& object, Context& context) {
     Source source;
     const int position = attribute(primitive, "POSITION"), normal = attribute(primitive, "NORMAL");
     if (position < 0) context.refuse(object, "it has no POSITION");
     const std::size_t count = element_count(model, position);
     const auto read = [&](int accessor, int components, Integers integers, const char* use) {
         if (element_count(model, accessor) != count)
-            context.refuse(object, std::string(use) + " has " + std::to_string(element_count(model, accessor)) + " elements, POSITION has " + std::to_string(count));
+            context.refuse(object, std::string(use) + " has " + std::to_string(element_count(model, accessor)) +
+                                       " elements, POSITION has " + std::to_string(count));
         return read_floats(model, accessor, components, integers, use, context);
     };
     source.positions = read(position, 3, request.quantized ? Integers::Any : Integers::None, "POSITION");
@@ -189,15 +191,20 @@ std::optional<Geometry> read_geometry(const tinygltf::Model& model, const tinygl
     }
     const std::size_t vertex_count = source.positions.size() / 3;
     for (const std::uint32_t index : source.indices)
-        if (index >= vertex_count) context.refuse(object, "an index is " + std::to_string(index) + ", and there are " + std::to_string(vertex_count) + " vertices");
+        if (index >= vertex_count)
+            context.refuse(object,
+                           "an index is " + std::to_string(index) + ", and there are " + std::to_string(vertex_count) + " vertices");
     // Draco decodes to a list whatever the primitive was.
     if (draco == primitive.extensions.end()) source.indices = to_triangle_list(primitive.mode, source.indices);
     drop_repeating_triangles(source.indices);
-    if (source.indices.size() / 3 > context.limits.triangles) context.refuse(object, "it has more than " + std::to_string(context.limits.triangles) + " triangles");
-    if (source.normals.empty() && source.indices.size() > context.limits.vertices) context.refuse(object, "flat shaded, it has more than " + std::to_string(context.limits.vertices) + " vertices");
+    if (source.indices.size() / 3 > context.limits.triangles)
+        context.refuse(object, "it has more than " + std::to_string(context.limits.triangles) + " triangles");
+    if (source.normals.empty() && source.indices.size() > context.limits.vertices)
+        context.refuse(object, "flat shaded, it has more than " + std::to_string(context.limits.vertices) + " vertices");
 
     if (request.texcoord_set >= 0 && source.texcoords.empty())
-        context.note("Some meshes have a texture but no texture coordinates for it (" + texcoord_name(request.texcoord_set) + "); it is left out there.");
+        context.note("Some meshes have a texture but no texture coordinates for it (" + texcoord_name(request.texcoord_set) +
+                     "); it is left out there.");
     Geometry geometry = source.normals.empty() ? unshare_vertices(source) : take_used_vertices(source);
     if (request.transform) apply(*request.transform, geometry.texcoords, object, context);
     return geometry;
@@ -211,7 +218,8 @@ Mesh place(const Geometry& geometry, const glm::dmat4& world_from_mesh, const st
     for (const glm::vec3& p : geometry.positions) {
         const glm::dvec3 world(world_from_mesh * glm::dvec4(p, 1.0));
         for (int k = 0; k < 3; ++k)
-            if (!(std::abs(world[k]) <= context.limits.world_extent)) context.refuse(object, "in world space a vertex lies farther than 1e12 m out");
+            if (!(std::abs(world[k]) <= context.limits.world_extent))
+                context.refuse(object, "in world space a vertex lies farther than 1e12 m out");
         mesh.positions.emplace_back(world);
     }
 
@@ -231,7 +239,8 @@ Mesh place(const Geometry& geometry, const glm::dmat4& world_from_mesh, const st
     if (is_mirroring)
         for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3) std::swap(mesh.indices[k + 1], mesh.indices[k + 2]);
     if (any_missing) mend_normals(mesh, missing);
-    if (any_missing && !geometry.is_flat) context.note("Some normals in the file have no direction; they were made from the triangles around them.");
+    if (any_missing && !geometry.is_flat)
+        context.note("Some normals in the file have no direction; they were made from the triangles around them.");
     return mesh;
 }
 

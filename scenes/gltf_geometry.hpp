@@ -15,7 +15,7 @@ struct Geometry {
     std::vector<glm::vec3> normals;    // one per position, any length but no NaN
     std::vector<glm::vec2> texcoords;  // one per position, or empty
     std::vector<std::uint32_t> indices;
-    bool is_flat = false;              // normals are zero, each triangle has vertices of its own
+    bool is_flat = false;  // normals are zero, each triangle has vertices of its own
 };
 
 // KHR_texture_transform, applied to texture coordinates as they are read. The extension's text (counter-clockwise, with v

@@ -7,7 +7,11 @@ namespace {
 class MaterialReader {
 public:
     MaterialReader(const tinygltf::Model& model, std::size_t index, const std::vector<int>& image_of, Context& context)
-        : model_(model), source_(model.materials[index]), image_of_(image_of), context_(context), object_(label("material", index, source_.name)) {}
+        : model_(model),
+          source_(model.materials[index]),
+          image_of_(image_of),
+          context_(context),
+          object_(label("material", index, source_.name)) {}
 
     ReadMaterial read() {
         Material& material = result_.material;
@@ -44,19 +48,25 @@ private:
 
     void read_alpha() {
         const std::string& mode = source_.alphaMode;
-        if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") context_.refuse(object_, "alphaMode " + quoted(mode, 20) + " is none of OPAQUE, MASK and BLEND");
+        if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+            context_.refuse(object_, "alphaMode " + quoted(mode, 20) + " is none of OPAQUE, MASK and BLEND");
         if (mode == "OPAQUE") return;
         const float alpha = unit(source_.pbrMetallicRoughness.baseColorFactor[3], "baseColorFactor");
         result_.material.alpha = alpha;
-        if (alpha < 1.0f || source_.pbrMetallicRoughness.baseColorTexture.index >= 0) context_.note("Alpha is not drawn: " + object_ + " is shown opaque.");
+        if (alpha < 1.0f || source_.pbrMetallicRoughness.baseColorTexture.index >= 0)
+            context_.note("Alpha is not drawn: " + object_ + " is shown opaque.");
     }
 
     Wrap wrap(int mode, std::size_t sampler) const {
         switch (mode) {
-            case TINYGLTF_TEXTURE_WRAP_REPEAT: return Wrap::Repeat;
-            case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::Clamp;
-            case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::Mirror;
-            default: context_.refuse(label("sampler", sampler), "wrap mode " + std::to_string(mode) + " is none of glTF's");
+            case TINYGLTF_TEXTURE_WRAP_REPEAT:
+                return Wrap::Repeat;
+            case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+                return Wrap::Clamp;
+            case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+                return Wrap::Mirror;
+            default:
+                context_.refuse(label("sampler", sampler), "wrap mode " + std::to_string(mode) + " is none of glTF's");
         }
     }
 
@@ -104,13 +114,17 @@ private:
             material.thickness = static_cast<float>(number(*volume, "thicknessFactor", 0.0));
             // The extension: without thickness the material is thin-walled, as if the extension were not there.
             material.has_volume = material.thickness > 0.0f;
-            if (!material.has_volume && material.transmission > 0.0f) context_.note("The volume of " + object_ + " has no thickness, so it is thin-walled, as glTF says.");
-            material.attenuation_distance = static_cast<float>(number(*volume, "attenuationDistance", std::numeric_limits<double>::infinity()));
-            for (int k = 0; k < 3; ++k) material.attenuation_color[k] = unit(number(*volume, "attenuationColor", k, 1.0), "attenuationColor");
+            if (!material.has_volume && material.transmission > 0.0f)
+                context_.note("The volume of " + object_ + " has no thickness, so it is thin-walled, as glTF says.");
+            material.attenuation_distance =
+                static_cast<float>(number(*volume, "attenuationDistance", std::numeric_limits<double>::infinity()));
+            for (int k = 0; k < 3; ++k)
+                material.attenuation_color[k] = unit(number(*volume, "attenuationColor", k, 1.0), "attenuationColor");
         }
         if (const tinygltf::Value* dispersion = extension("KHR_materials_dispersion")) {
             material.dispersion = static_cast<float>(number(*dispersion, "dispersion", 0.0));
-            if (material.dispersion > 0.0f && !material.has_volume) context_.note("In " + object_ + " there is dispersion but no volume, so it has no effect.");
+            if (material.dispersion > 0.0f && !material.has_volume)
+                context_.note("In " + object_ + " there is dispersion but no volume, so it has no effect.");
         }
     }
 
@@ -125,9 +139,11 @@ private:
             }
         }
         double strength = 1.0;
-        if (const tinygltf::Value* emissive = extension("KHR_materials_emissive_strength")) strength = number(*emissive, "emissiveStrength", 1.0);
+        if (const tinygltf::Value* emissive = extension("KHR_materials_emissive_strength"))
+            strength = number(*emissive, "emissiveStrength", 1.0);
         for (int k = 0; k < 3; ++k)
-            material.emission[k] = static_cast<float>(strength) * unit(source_.emissiveFactor[static_cast<std::size_t>(k)], "emissiveFactor");
+            material.emission[k] =
+                static_cast<float>(strength) * unit(source_.emissiveFactor[static_cast<std::size_t>(k)], "emissiveFactor");
     }
 
     void note_what_is_left_out() {
@@ -138,17 +154,21 @@ private:
         if (source_.emissiveTexture.index >= 0) context_.note("Emission maps are not drawn; emissiveFactor alone counts.");
         if (source_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
             context_.note("Metallic-roughness maps are not drawn; the factors alone count.");
-        for (const auto& [name, key] : {std::pair("KHR_materials_transmission", "transmissionTexture"), std::pair("KHR_materials_volume", "thicknessTexture"),
-                                        std::pair("KHR_materials_specular", "specularTexture"), std::pair("KHR_materials_specular", "specularColorTexture")})
-            if (const tinygltf::Value* value = extension(name); value && value->Has(key)) context_.note(std::string(key) + " is not drawn; its factor alone counts.");
+        for (const auto& [name, key] :
+             {std::pair("KHR_materials_transmission", "transmissionTexture"), std::pair("KHR_materials_volume", "thicknessTexture"),
+              std::pair("KHR_materials_specular", "specularTexture"), std::pair("KHR_materials_specular", "specularColorTexture")})
+            if (const tinygltf::Value* value = extension(name); value && value->Has(key))
+                context_.note(std::string(key) + " is not drawn; its factor alone counts.");
         if (material.metallic >= 0.5f && material.roughness > 0.0f && material.kind() == SurfaceKind::Mirror)
             context_.note("Metals with a roughness of at most 0.3 are drawn as perfect mirrors: " + object_ + " is.");
         if (material.kind() == SurfaceKind::Dielectric && material.roughness > 0.0f)
             context_.note("Rough glass is drawn clear: " + object_ + " is.");
         if (material.kind() == SurfaceKind::Dielectric && material.transmission < 1.0f)
-            context_.note("A transmission of one half or more is drawn as 1: " + object_ + " has " + std::to_string(material.transmission) + ".");
+            context_.note("A transmission of one half or more is drawn as 1: " + object_ + " has " + std::to_string(material.transmission) +
+                          ".");
         if (material.kind() == SurfaceKind::Lambert && material.transmission > 0.0f)
-            context_.note("A transmission below one half is drawn as 0: " + object_ + " has " + std::to_string(material.transmission) + ".");
+            context_.note("A transmission below one half is drawn as 0: " + object_ + " has " + std::to_string(material.transmission) +
+                          ".");
     }
 
     const tinygltf::Model& model_;

@@ -18,7 +18,8 @@ glm::dmat4 from_translation_rotation_scale(const tinygltf::Node& node, const std
         const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
         const double square = x * x + y * y + z * z + w * w;
         const double s = 2.0 / square;
-        if (!(square > 0.0) || !std::isfinite(s) || !std::isfinite(square)) context.refuse(object, "its rotation is not a quaternion that can be given unit length");
+        if (!(square > 0.0) || !std::isfinite(s) || !std::isfinite(square))
+            context.refuse(object, "its rotation is not a quaternion that can be given unit length");
         matrix[0] = {1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w), 0.0};
         matrix[1] = {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w), 0.0};
         matrix[2] = {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y), 0.0};
@@ -56,7 +57,8 @@ std::vector<int> find_parents(const tinygltf::Model& model, const Context& conte
         for (const int child : model.nodes[node].children) {
             int& parent = parents[static_cast<std::size_t>(child)];
             if (parent >= 0)
-                context.refuse(node_label(model, child), "it is the child of both node " + std::to_string(parent) + " and node " + std::to_string(node));
+                context.refuse(node_label(model, child),
+                               "it is the child of both node " + std::to_string(parent) + " and node " + std::to_string(node));
             parent = static_cast<int>(node);
         }
     }
@@ -114,7 +116,8 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, Context& conte
         char& was_visited = visited[static_cast<std::size_t>(pending.node)];
         if (was_visited) context.refuse(object, "the scene lists it twice, or lists it beside its parent");
         was_visited = 1;
-        if (pending.depth > context.limits.node_depth) context.refuse(object, "it lies deeper than " + std::to_string(context.limits.node_depth) + " nodes");
+        if (pending.depth > context.limits.node_depth)
+            context.refuse(object, "it lies deeper than " + std::to_string(context.limits.node_depth) + " nodes");
         const glm::dmat4 world = pending.world_from_parent * parent_from_node(model, pending.node, context);
         if (!is_finite(world)) context.refuse(object, "its world matrix is not finite");
         placed.push_back({pending.node, world});
@@ -147,8 +150,8 @@ Camera read_camera(const tinygltf::Model& model, const PlacedNode& placed, Conte
     const glm::dvec3 node_up(placed.world_from_node[1]);
     const glm::dvec3 right = axis(glm::cross(node_up, back), object, context);
     const glm::dvec3 up = glm::cross(back, right);
-    camera.world_from_camera = glm::mat4(glm::vec4(glm::vec3(right), 0.0f), glm::vec4(glm::vec3(up), 0.0f), glm::vec4(glm::vec3(back), 0.0f),
-                                         glm::vec4(place_of(placed, object, context), 1.0f));
+    camera.world_from_camera = glm::mat4(glm::vec4(glm::vec3(right), 0.0f), glm::vec4(glm::vec3(up), 0.0f),
+                                         glm::vec4(glm::vec3(back), 0.0f), glm::vec4(place_of(placed, object, context), 1.0f));
     return camera;
 }
 

@@ -16,13 +16,13 @@
 namespace nephroid::scenes::gltf {
 
 struct Document {
-    std::string json;                      // for tinygltf: without animations, skins and morph targets
-    std::vector<std::string> buffer_uris;  // of each buffer; empty: the GLB's binary chunk
-    std::vector<std::size_t> buffer_sizes; // byteLength of each
-    std::vector<std::string> image_uris;   // of each image; empty: a bufferView
-    std::vector<char> image_wanted;        // whether a material shows it
-    std::vector<Medium> media;             // of the scene's extras
-    bool quantized = false;                // KHR_mesh_quantization is declared
+    std::string json;                       // for tinygltf: without animations, skins and morph targets
+    std::vector<std::string> buffer_uris;   // of each buffer; empty: the GLB's binary chunk
+    std::vector<std::size_t> buffer_sizes;  // byteLength of each
+    std::vector<std::string> image_uris;    // of each image; empty: a bufferView
+    std::vector<char> image_wanted;         // whether a material shows it
+    std::vector<Medium> media;              // of the scene's extras
+    bool quantized = false;                 // KHR_mesh_quantization is declared
 };
 
 // A primitive's "indices" are moved to its extras under this name, out of tinygltf's reach, which refuses accessors

@@ -23,8 +23,9 @@ const char* format_of(std::span<const unsigned char> bytes) {
 }
 
 bool size_is_allowed(const OIIO::ImageSpec& spec, const Limits& limits, std::string& why) {
-    if (spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && spec.nchannels >= 1 && spec.nchannels <= 64 && spec.width <= limits.image_side &&
-        spec.height <= limits.image_side && static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) <= limits.image_texels)
+    if (spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && spec.nchannels >= 1 && spec.nchannels <= 64 &&
+        spec.width <= limits.image_side && spec.height <= limits.image_side &&
+        static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) <= limits.image_texels)
         return true;
     why = "its size of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " is beyond the limits";
     return false;
@@ -37,8 +38,7 @@ std::string last_error(OIIO::ImageInput* input) {
 }
 
 // Grey, grey + alpha, RGB or RGBA, in the first four of `channels` channels, to RGBA.
-template <class T>
-void spread_channels(const T* texel, int channels, T opaque, T* rgba) {
+template <class T> void spread_channels(const T* texel, int channels, T opaque, T* rgba) {
     const bool is_grey = channels < 3;
     for (int k = 0; k < 3; ++k) rgba[k] = texel[is_grey ? 0 : k];
     rgba[3] = channels == 2 ? texel[1] : channels >= 4 ? texel[3] : opaque;
@@ -70,7 +70,8 @@ bool decode_srgb8(std::span<const unsigned char> bytes, const Limits& limits, Im
         return false;
     }
     if (!size_is_allowed(spec, limits, why)) return false;
-    const std::size_t texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height), channels = static_cast<std::size_t>(spec.nchannels);
+    const std::size_t texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height),
+                      channels = static_cast<std::size_t>(spec.nchannels);
     std::vector<std::uint8_t> decoded(texels * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, decoded.data())) {
         why = last_error(input.get());
@@ -96,11 +97,13 @@ Image load_environment(const std::string& path, const Limits& limits) {
     std::string why;
     if (spec.deep) refuse("it is a deep image");
     if (!size_is_allowed(spec, limits, why)) refuse(why);
-    if (spec.width != 2 * spec.height) refuse("a lat-long image is twice as wide as high, not " + std::to_string(spec.width) + "x" + std::to_string(spec.height));
+    if (spec.width != 2 * spec.height)
+        refuse("a lat-long image is twice as wide as high, not " + std::to_string(spec.width) + "x" + std::to_string(spec.height));
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height)
         refuse("its data window is not its display window");
 
-    const std::size_t texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height), channels = static_cast<std::size_t>(std::min(spec.nchannels, 4));
+    const std::size_t texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height),
+                      channels = static_cast<std::size_t>(std::min(spec.nchannels, 4));
     std::vector<float> decoded(texels * channels);
     input->threads(1);
     if (!input->read_image(0, 0, 0, static_cast<int>(channels), OIIO::TypeDesc::FLOAT, decoded.data())) refuse(last_error(input.get()));
@@ -115,7 +118,9 @@ Image load_environment(const std::string& path, const Limits& limits) {
         rgba[3] = 1.0f;
         for (int c = 0; c < 3; ++c) {
             constexpr float largest_half = 65504.0f;
-            if (std::isnan(rgba[c])) refuse("texel " + std::to_string(k % static_cast<std::size_t>(spec.width)) + ", " + std::to_string(k / static_cast<std::size_t>(spec.width)) + " is not a number");
+            if (std::isnan(rgba[c]))
+                refuse("texel " + std::to_string(k % static_cast<std::size_t>(spec.width)) + ", " +
+                       std::to_string(k / static_cast<std::size_t>(spec.width)) + " is not a number");
             if (rgba[c] < 0.0f) rgba[c] = 0.0f;
             if (std::isinf(rgba[c])) rgba[c] = largest_half;
         }

@@ -10,7 +10,8 @@ struct Limits {
     std::uint64_t file_bytes = (1ull << 31) - 1;   // of any one file (tinygltf counts bytes in an int)
     std::uint64_t total_bytes = 1ull << 32;        // of all buffers and images together, decoded from base64
     std::size_t json_depth = 100;                  // brackets in brackets (tinygltf walks extras recursively)
-    std::uint64_t json_values = 1ull << 23;        // numbers, strings, arrays and objects in the text
+    std::uint64_t json_values = 1ull << 22;        // numbers, strings, arrays and objects in the text (some 300 bytes each, parsed)
+    std::size_t array_elements = 1u << 18;         // nodes, meshes, primitives, accessors, materials ... each (up to 2 kB each, parsed)
     std::size_t node_depth = 512;                  // nodes under nodes
     std::uint64_t meshes = 1ull << 18;             // of the scene: one for each primitive of each node
     std::uint64_t vertices = 1ull << 26;           // of the scene, instances counted each time; also of one accessor

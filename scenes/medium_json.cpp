@@ -3,6 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scenes/gltf_container.hpp"
+#include "scenes/gltf_files.hpp"
+#include "scenes/load.hpp"
+
 namespace nephroid::scenes {
 namespace {
 using nlohmann::json;
@@ -10,16 +14,20 @@ using nlohmann::json;
 // One medium's properties, each checked as it is read.
 class MediumReader {
 public:
-    MediumReader(const json& value, std::string object, const gltf::Context& context) : value_(value), object_(std::move(object)), context_(context) {
+    MediumReader(const json& value, std::string object, const gltf::Context& context)
+        : value_(value), object_(std::move(object)), context_(context) {
         if (!value_.is_object()) refuse("it must be an object");
     }
 
     Medium read() const {
         Medium medium;
         const std::string type = text("type", "homogeneous");
-        if (type == "homogeneous") medium.type = Medium::Type::Homogeneous;
-        else if (type == "grid") medium.type = Medium::Type::Grid;
-        else refuse("its type " + quoted(type) + " is neither homogeneous nor grid");
+        if (type == "homogeneous")
+            medium.type = Medium::Type::Homogeneous;
+        else if (type == "grid")
+            medium.type = Medium::Type::Grid;
+        else
+            refuse("its type " + quoted(type) + " is neither homogeneous nor grid");
         for (const auto& [key, unused] : value_.items()) {
             static_cast<void>(unused);
             const bool grid_key = key == "size" || key == "low" || key == "high" || key == "density";
@@ -73,7 +81,8 @@ private:
         std::uint64_t cells = 1;
         for (std::size_t k = 0; k < 3; ++k) {
             const json& n = (*size)[k];
-            if (!n.is_number_unsigned() || n.get<std::uint64_t>() < 1 || n.get<std::uint64_t>() > 65536) refuse("size must be three integers of 1 to 65536");
+            if (!n.is_number_unsigned() || n.get<std::uint64_t>() < 1 || n.get<std::uint64_t>() > 65536)
+                refuse("size must be three integers of 1 to 65536");
             medium.size[k] = static_cast<int>(n.get<std::uint64_t>());
             cells *= n.get<std::uint64_t>();
         }
@@ -81,8 +90,7 @@ private:
         medium.high = three(*high, "high");
         for (int k = 0; k < 3; ++k)
             if (!(medium.low[k] < medium.high[k])) refuse("low must lie below high on every axis");
-        if (!density->is_array() || density->size() != cells)
-            refuse("density must be " + std::to_string(cells) + " numbers, as size says");
+        if (!density->is_array() || density->size() != cells) refuse("density must be " + std::to_string(cells) + " numbers, as size says");
         medium.density.reserve(density->size());
         for (const json& value : *density) {
             medium.density.push_back(number(&value, "density", 0.0f));
@@ -103,9 +111,29 @@ std::vector<Medium> read_media(const nlohmann::json& extras, const std::string& 
     if (const auto it = extras.find("medium"); it != extras.end()) media.push_back(MediumReader(*it, object + " medium", context).read());
     if (const auto it = extras.find("media"); it != extras.end()) {
         if (!it->is_array()) context.refuse(object, "media must be a list");
-        for (std::size_t k = 0; k < it->size(); ++k) media.push_back(MediumReader((*it)[k], object + " " + gltf::label("medium", k), context).read());
+        for (std::size_t k = 0; k < it->size(); ++k)
+            media.push_back(MediumReader((*it)[k], object + " " + gltf::label("medium", k), context).read());
     }
     return media;
+}
+
+void check_media(const Scene& scene, const gltf::Context& context) {
+    for (const Medium& medium : scene.media) {
+        bool found = medium.inside.empty();
+        for (const Mesh& mesh : scene.meshes) found = found || mesh.name == medium.inside;
+        if (!found) context.refuse("medium", "it is inside " + quoted(medium.inside) + ", and no node with a mesh has that name");
+    }
+}
+
+void set_media(Scene& scene, const std::string& path, const Limits& limits) {
+    gltf::Context context(path, limits);
+    const std::vector<unsigned char> bytes = gltf::read_file(path, "", context);
+    const std::string_view text = gltf::open_container(std::as_bytes(std::span(bytes)), context).json;
+    const json root = json::parse(text, nullptr, false);
+    if (!root.is_object()) context.refuse("JSON", "it must be an object, {\"medium\": {...}} or {\"media\": [...]}");
+    if (!root.contains("medium") && !root.contains("media")) context.refuse("JSON", "it holds neither medium nor media");
+    scene.media = read_media(root, "file", context);
+    check_media(scene, context);
 }
 
 }  // namespace nephroid::scenes

@@ -11,6 +11,9 @@
 
 namespace nephroid::scenes {
 
+// Refuses a medium inside a node that has no mesh in the scene.
+void check_media(const Scene& scene, const gltf::Context& context);
+
 // Reads {"medium": {...}} and {"media": [{...}]} of a glTF scene's extras.
 std::vector<Medium> read_media(const nlohmann::json& extras, const std::string& object, const gltf::Context& context);
 

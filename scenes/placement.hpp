@@ -9,10 +9,7 @@
 namespace nephroid::scenes {
 
 // v / |v|. One rounding less than glm::normalize, so that axes come out exact.
-template <int L>
-glm::vec<L, float> unit(const glm::vec<L, float>& v) {
-    return v / glm::length(v);
-}
+template <int L> glm::vec<L, float> unit(const glm::vec<L, float>& v) { return v / glm::length(v); }
 
 // A camera's place: at `eye`, looking at `target`, y up. The two must differ, and not lie on one vertical.
 glm::mat4 look_at(const glm::vec3& eye, const glm::vec3& target);

@@ -1,5 +1,7 @@
 #include "scenes/scene.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "scenes/placement.hpp"
@@ -22,15 +24,18 @@ void extend(Bounds& box, const glm::vec3& p) {
         if (p[k] > box.high[k]) box.high[k] = p[k];
     }
 }
-// The middle of a box and half its diagonal; for an empty scene a unit box round the origin.
+// The middle of a box and half its diagonal; for an empty scene a unit ball round the origin. The radius is never so small
+// that floats near the middle cannot tell its ends apart, or that its square vanishes.
 struct Ball {
     glm::vec3 centre{0.0f};
     float radius = 1.0f;
 };
 Ball ball_round(const Bounds& box) {
     if (!(box.low.x <= box.high.x)) return {};
-    const float radius = 0.5f * glm::length(box.high - box.low);
-    return {0.5f * box.low + 0.5f * box.high, radius > 0.0f ? radius : 1.0f};
+    const glm::dvec3 centre = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
+    double radius = 0.5 * glm::length(glm::dvec3(box.high) - glm::dvec3(box.low));
+    for (int k = 0; k < 3; ++k) radius = std::max(radius, 1e-4 * std::abs(centre[k]));
+    return {glm::vec3(centre), static_cast<float>(std::max(radius, 1e-9))};
 }
 }  // namespace
 
@@ -61,6 +66,7 @@ bool add_receiver(Scene& scene) {
     const float x0 = ball.centre.x - reach, x1 = ball.centre.x + reach, z0 = ball.centre.z - reach, z1 = ball.centre.z + reach;
     const int material = add_lambert(scene, "added floor", glm::vec3(0.8f));
     scene.meshes.push_back(make_quad("added floor", material, {x0, y, z1}, {x1, y, z1}, {x1, y, z0}, {x0, y, z0}));
+    scene.meshes.back().normals.assign(4, glm::vec3(0.0f, 1.0f, 0.0f));  // of a very small quad make_quad finds none
     scene.notes.push_back("Nothing in the scene is diffuse, so a caustic would fall on nothing: a floor was added below.");
     return true;
 }
@@ -70,8 +76,10 @@ void complete(Scene& scene) {
     bool has_added_floor = false;
     Bounds box;
     for (const Mesh& mesh : scene.meshes) {
-        if (mesh.name == "added floor") has_added_floor = true;
-        else for (const glm::vec3& p : mesh.positions) extend(box, p);
+        if (mesh.name == "added floor")
+            has_added_floor = true;
+        else
+            for (const glm::vec3& p : mesh.positions) extend(box, p);
     }
     const Ball ball = ball_round(box);
 

@@ -19,6 +19,8 @@ std::string quoted(const std::string& text, std::size_t most) {
 
 SceneError::SceneError(const std::string& file, const std::string& object, const std::string& rule)
     : std::runtime_error(one_line(file, 400) + ": " + (object.empty() ? "" : one_line(object, 200) + ": ") + one_line(rule, 400)),
-      file_(file), object_(object), rule_(rule) {}
+      file_(file),
+      object_(object),
+      rule_(rule) {}
 
 }  // namespace nephroid::scenes

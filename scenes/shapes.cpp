@@ -58,7 +58,9 @@ Mesh make_sphere(const char* name, int material, const glm::vec3& centre, float 
         for (std::uint32_t b = a + 1; b < count; ++b) {
             for (std::uint32_t c = b + 1; c < count; ++c) {
                 // Neighbours are at cosine 1 / sqrt(5) = 0.447, all others at -0.447 and -1.
-                if (glm::dot(corners[a], corners[b]) < 0.4f || glm::dot(corners[b], corners[c]) < 0.4f || glm::dot(corners[c], corners[a]) < 0.4f) continue;
+                if (glm::dot(corners[a], corners[b]) < 0.4f || glm::dot(corners[b], corners[c]) < 0.4f ||
+                    glm::dot(corners[c], corners[a]) < 0.4f)
+                    continue;
                 const bool is_outward = glm::dot(glm::cross(corners[b] - corners[a], corners[c] - corners[a]), corners[a]) > 0.0f;
                 faces.push_back(is_outward ? std::array{a, b, c} : std::array{a, c, b});
             }
@@ -131,7 +133,9 @@ Mesh make_revolution(const char* name, int material, const glm::vec3& centre, st
     for (std::size_t p = 0; p + 1 < outline.size(); ++p) {
         const OutlinePoint &low = outline[p], &high = outline[p + 1];
         if (low.radius == high.radius && low.height == high.height) continue;  // a sharpened edge
-        const auto at = [&](std::size_t point, int k) { return first[point] + (outline[point].radius > 0.0f ? static_cast<std::uint32_t>(k % segments) : 0u); };
+        const auto at = [&](std::size_t point, int k) {
+            return first[point] + (outline[point].radius > 0.0f ? static_cast<std::uint32_t>(k % segments) : 0u);
+        };
         for (int k = 0; k < segments; ++k) {
             if (high.radius > 0.0f) add_triangle(mesh, at(p, k), at(p + 1, k), at(p + 1, k + 1));
             if (low.radius > 0.0f) add_triangle(mesh, at(p, k), at(p + 1, k + 1), at(p, k + 1));
@@ -150,9 +154,12 @@ std::vector<OutlinePoint> smooth_outline(std::span<const glm::vec2> points, int 
     for (std::size_t k = 0; k <= last; ++k) {
         const glm::vec2 before = k == 0 ? glm::vec2(0.0f) : (points[k] - points[k - 1]) / lengths[k - 1];
         const glm::vec2 after = k == last ? glm::vec2(0.0f) : (points[k + 1] - points[k]) / lengths[k];
-        if (k != 0 && k != last) slopes.push_back((before * lengths[k] + after * lengths[k - 1]) / (lengths[k] + lengths[k - 1]));
-        else if (points[k].x == 0.0f) slopes.emplace_back(k == 0 ? 1.0f : -1.0f, 0.0f);
-        else slopes.push_back(before + after);
+        if (k != 0 && k != last)
+            slopes.push_back((before * lengths[k] + after * lengths[k - 1]) / (lengths[k] + lengths[k - 1]));
+        else if (points[k].x == 0.0f)
+            slopes.emplace_back(k == 0 ? 1.0f : -1.0f, 0.0f);
+        else
+            slopes.push_back(before + after);
     }
 
     std::vector<OutlinePoint> outline;
@@ -182,13 +189,16 @@ Mesh make_prism(const char* name, int material, const glm::vec2& a, const glm::v
             mesh.positions.emplace_back(p, is_front ? z1 : z0);
             mesh.normals.emplace_back(0.0f, 0.0f, is_front ? 1.0f : -1.0f);
         }
-        if (is_front) add_triangle(mesh, first, first + 1, first + 2);
-        else add_triangle(mesh, first, first + 2, first + 1);
+        if (is_front)
+            add_triangle(mesh, first, first + 1, first + 2);
+        else
+            add_triangle(mesh, first, first + 2, first + 1);
     }
     return mesh;
 }
 
-Mesh make_water(const char* name, int material, const glm::vec2& low, const glm::vec2& high, float y, std::span<const Wave> waves, int cells) {
+Mesh make_water(const char* name, int material, const glm::vec2& low, const glm::vec2& high, float y, std::span<const Wave> waves,
+                int cells) {
     Mesh mesh = named(name, material);
     for (int j = 0; j <= cells; ++j) {
         for (int i = 0; i <= cells; ++i) {

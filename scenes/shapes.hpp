@@ -39,7 +39,8 @@ struct Wave {
     float phase;
 };
 // A rippled sheet over [low.x, high.x] x [low.y, high.y] (x, z) at height y, normals up: cells^2 squares of two triangles.
-Mesh make_water(const char* name, int material, const glm::vec2& low, const glm::vec2& high, float y, std::span<const Wave> waves, int cells);
+Mesh make_water(const char* name, int material, const glm::vec2& low, const glm::vec2& high, float y, std::span<const Wave> waves,
+                int cells);
 
 // Box corners `low` and `high`, seen from inside (normals inward): -x, +x, -y, +y, -z, +z, each a quad or left out.
 struct Sides {

@@ -7,7 +7,7 @@
 namespace nephroid::lane_math {
 
 // |x| = quadrant * pi/2 + (hi + lo), |hi| <= pi/4 and a little. Of the quadrant only the lowest two bits count. The error
-// of hi + lo is below 2^-23 ulp of hi for small angles, and never more than a few hundredths of an ulp.
+// of hi + lo is a small fraction of an ulp of hi, however near to a multiple of pi/2 the angle is.
 template <LaneFloat F>
 struct ReducedAngle {
     F hi, lo;

@@ -4,11 +4,11 @@
 
 namespace nephroid::lane_math {
 
-// 2^f for |f| <= 1/2 (and a rounding error more).
+// 2^f - 1 - f / 2 for |f| <= 1/2 (and a rounding error more). f / 2 is exact and this term small, so that one rounding on
+// their sum's scale is all.
 template <LaneFloat F>
-inline F exp2_of_fraction(F f) {
-    // f / 2 is exact, and the other term small, so that one rounding on their sum's scale is all.
-    return 1.0f + (0.5f * f + f * polynomial(f, 0x1.8b90c2p-3f, 0x1.ebfbdcp-3f, 0x1.c6af0ep-5f, 0x1.3b2d8ep-7f, 0x1.5f311p-10f, 0x1.41c6eap-13f));
+inline F exp2_tail(F f) {
+    return f * polynomial(f, 0x1.8b90c2p-3f, 0x1.ebfbdcp-3f, 0x1.c6af0ep-5f, 0x1.3b2d8ep-7f, 0x1.5f311p-10f, 0x1.41c6eap-13f);
 }
 
 // About 30 operations.
@@ -31,7 +31,8 @@ template <LaneFloat F>
 inline F exp2(F x) {
     const F bounded = min(max(x, -151.0f), 128.0f);
     const auto [k, exponent] = round_to_int(bounded);
-    return scale_near_one(exp2_of_fraction(bounded - k), exponent);
+    const F f = bounded - k;
+    return scale_near_one(1.0f + (0.5f * f + exp2_tail(f)), exponent);
 }
 
 }  // namespace nephroid::lane_math

@@ -56,12 +56,13 @@ inline F log2(F x) {
     const LaneMask<F> special = not_positive_normal(x);
     const Normalized<F> normal = normalize(x, special);
     const auto [exponent, f] = decompose(normal.value);
-    // log2(x) = k + log(1 + f) / ln 2. The product of the upper parts of f and of 1 / ln 2 is exact, and so is its sum with k.
+    // log2(x) = k + log(1 + f) / ln 2. The product of the upper parts of f and of 1 / ln 2 is exact, and so is its sum with k;
+    // what it lacks of f / ln 2 joins the other terms, small ones first, before they are multiplied.
     const F f_hi = upper_half(f);
     const auto [hi, lo] = fast_two_sum(exponent + normal.exponent_offset, f_hi * 0x1.716p0f);
     const F square = f * f;
-    const F rest = (f - f_hi) - (0.5f * square - log_tail(f, square));
-    const F result = hi + (lo + (f_hi * -0x1.7135a8p-13f + rest * 0x1.715476p0f));
+    const F rest = (log_tail(f, square) + ((f - f_hi) + f_hi * -0x1.ffd54cp-14f)) - 0.5f * square;
+    const F result = hi + (lo + rest * 0x1.715476p0f);
     return any(special) ? logarithm_special_values(x, result) : result;
 }
 

@@ -50,7 +50,7 @@ inline F pow_special_values(F x, F y, F magnitude) {
     return select((y == 0.0f) | (x == 1.0f), F(1.0f), result);
 }
 
-// About 110 operations, one of them a division; 35 more where an x is not positive and normal.
+// About 115 operations, one of them a division; 35 more where an x is not positive and normal.
 template <LaneFloat F>
 inline F pow(F x, F y) {
     const LaneMask<F> special = not_positive_normal(x) | (y != y);
@@ -65,8 +65,9 @@ inline F pow(F x, F y) {
     const auto [t, t_lo] = fast_two_sum(product, product_lo);
     const F bounded_t = min(max(t, -151.0f), 129.0f);
     const auto [k, exponent] = round_to_int(bounded_t);
-    const F fraction = (bounded_t - k) + select(t == bounded_t, t_lo, F(0.0f));
-    const F result = scale_near_one(exp2_of_fraction(fraction), exponent);
+    // The fraction is rounded to F; what that loses counts with 2^f's derivative, for which ln 2 will do.
+    const auto [f, f_lo] = fast_two_sum(bounded_t - k, select(t == bounded_t, t_lo, F(0.0f)));
+    const F result = scale_near_one(1.0f + (0.5f * f + (exp2_tail(f) + f_lo * 0x1.62e43p-1f)), exponent);
     return any(special) ? pow_special_values(x, y, result) : result;
 }
 

@@ -113,10 +113,12 @@ struct StructuredView {
     V<F> load(LaneInt<F> index) const {
         constexpr int components = static_cast<int>(sizeof(V<float>) / 4);
         const LaneMask<F> inside = (index >= 0) & (index < count);
-        V<F> result;
-        F* out = reinterpret_cast<F*>(&result);
+        const LaneInt<F> at = select(inside, index, LaneInt<F>(0)) * components;
+        F out[components];
         const float* in = reinterpret_cast<const float*>(data);
-        for (int c = 0; c < components; ++c) out[c] = gather(in + c, index * components, inside);
+        for (int c = 0; c < components; ++c) out[c] = gather(in ? in + c : in, at, inside);
+        V<F> result;
+        std::memcpy(static_cast<void*>(&result), out, sizeof result);
         return result;
     }
 };

@@ -25,16 +25,15 @@ float distance(const Plane& p, const float v[4]) { return (p.x * v[0] + p.y * v[
 struct ClipVertex {
     float position[4];
     std::uint32_t vertex;  // in batch.vertices
+    bool in_guard_band;    // as set-up sees it; false for new vertices
 };
 
-// Behind the eye is outside; so small a w that its reciprocal overflows is too.
-constexpr float smallest_w = 0x1p-64f;
 // A little inside the guard band, so that rounding does not carry a new vertex out of it.
 constexpr float margin = 64;
 
 struct PlaneSet {
     Plane plane[plane_count];
-    int count = 0;
+    int count = 0, first_guard;
 
     PlaneSet(const DrawContext& draw, const RasterTarget& t) {
         plane[count++] = {0, 0, 0, 1};  // w > 0, tested against smallest_w
@@ -42,12 +41,19 @@ struct PlaneSet {
             plane[count++] = {0, 0, 1, 0};
             plane[count++] = {0, 0, -1, 1};
         }
+        first_guard = count;
         plane[count++] = {t.scale_x, 0, 0, t.offset_x - (guard_low + margin)};
         plane[count++] = {-t.scale_x, 0, 0, guard_high - margin - t.offset_x};
         plane[count++] = {0, t.scale_y, 0, t.offset_y - (guard_low + margin)};
         plane[count++] = {0, -t.scale_y, 0, guard_high - margin - t.offset_y};
     }
-    float inside(int k, const float v[4]) const { return k == 0 ? v[3] - smallest_w : distance(plane[k], v); }
+    // How far inside a vertex is. One of the primitive's own that set-up finds within the guard band is inside of it, however
+    // near to its border: a neighbour that shares the vertex and needs no clipping keeps it, too.
+    float inside(int k, const ClipVertex& v) const {
+        if (k == 0) return v.position[3] - smallest_w;
+        const float d = distance(plane[k], v.position);
+        return k >= first_guard && v.in_guard_band ? max(d, 0.0f) : d;
+    }
 };
 
 bool finite(const float v[4]) {
@@ -62,15 +68,31 @@ int outcode(const float v[4], bool depth_clip) {
     return (x < -w) | (x > w) << 1 | (y < -w) << 2 | (y > w) << 3 | (depth_clip && z < 0) << 4 | (depth_clip && z > w) << 5 | (w <= 0) << 6;
 }
 
-void load(const Batch& batch, std::uint32_t vertex, ClipVertex& out) {
-    for (int c = 0; c < 4; ++c) out.position[c] = batch.vertices.position[c][vertex];
-    out.vertex = vertex;
+
+ScreenVertex project(const DrawContext& draw, const RasterTarget& target, const float p[4]) {
+    const float r = 1.0f / p[3];
+    return {(p[0] * r) * target.scale_x + target.offset_x, (p[1] * r) * target.scale_y + target.offset_y, (p[2] * r) * draw.depth_scale + draw.depth_offset, r};
 }
 
-// The vertex at parameter t on the way from a to b, appended to the batch's.
-ClipVertex cut(const DrawContext& draw, Batch& batch, const ClipVertex& a, const ClipVertex& b, float t) {
+void load(const DrawContext& draw, const RasterTarget& target, const Batch& batch, std::uint32_t vertex, ClipVertex& out) {
+    for (int c = 0; c < 4; ++c) out.position[c] = batch.vertices.position[c][vertex];
+    out.vertex = vertex;
+    const ScreenVertex s = project(draw, target, out.position);
+    out.in_guard_band = out.position[3] >= smallest_w && s.x >= guard_low && s.x <= guard_high && s.y >= guard_low && s.y <= guard_high;
+}
+
+// The new vertex, appended to the batch's, where the edge from an inner vertex a to an outer one b crosses plane k.
+ClipVertex cut(const DrawContext& draw, Batch& batch, int k, const ClipVertex& a, const ClipVertex& b, float inside_a, float inside_b) {
+    // From the nearer end, so that little is lost where one end's numbers are small against the other's: t of the way from
+    // `from` to `to`.
+    const float whole = inside_a - inside_b;
+    const bool from_a = inside_a <= -inside_b;
+    const ClipVertex &from = from_a ? a : b, &to = from_a ? b : a;
+    const float t = (from_a ? inside_a : -inside_b) / whole;
     ClipVertex v;
-    for (int c = 0; c < 4; ++c) v.position[c] = a.position[c] + t * (b.position[c] - a.position[c]);
+    v.in_guard_band = false;
+    for (int c = 0; c < 4; ++c) v.position[c] = from.position[c] + t * (to.position[c] - from.position[c]);
+    if (k == 0) v.position[3] = smallest_w;
     v.vertex = static_cast<std::uint32_t>(batch.raster_vertex_count++);
     for (int c = 0; c < 4; ++c) batch.vertices.position[c][v.vertex] = v.position[c];
     if (!batch.vertices.records) return v;
@@ -78,14 +100,15 @@ ClipVertex cut(const DrawContext& draw, Batch& batch, const ClipVertex& a, const
     const RecordLayout& layout = *draw.raster_layout;
     const std::size_t bytes = static_cast<std::size_t>(layout.bytes);
     std::byte* out = batch.vertices.records + v.vertex * bytes;
-    const std::byte *from_a = batch.vertices.records + a.vertex * bytes, *from_b = batch.vertices.records + b.vertex * bytes;
-    const float screen_t = (t * b.position[3]) / v.position[3];
+    const std::byte *first = batch.vertices.records + from.vertex * bytes, *second = batch.vertices.records + to.vertex * bytes;
+    // Linear on the screen; an edge that comes from behind the eye has no such thing, and only its part in front is drawn.
+    const float screen_t = k == 0 ? t : min((t * to.position[3]) / v.position[3], 1.0f);
     for (std::size_t c = 0; c < bytes / 4; ++c) {
         std::uint32_t word;
-        std::memcpy(&word, from_a + 4 * c, 4);
+        std::memcpy(&word, first + 4 * c, 4);
         if (layout.mode[c] == ComponentMode::Smooth || layout.mode[c] == ComponentMode::Linear) {
             std::uint32_t other;
-            std::memcpy(&other, from_b + 4 * c, 4);
+            std::memcpy(&other, second + 4 * c, 4);
             const float x = bits_float(word), y = bits_float(other);
             word = float_bits(x + (layout.mode[c] == ComponentMode::Smooth ? t : screen_t) * (y - x));
         }
@@ -94,10 +117,62 @@ ClipVertex cut(const DrawContext& draw, Batch& batch, const ClipVertex& a, const
     return v;
 }
 
-ScreenVertex project(const DrawContext& draw, const RasterTarget& target, const float p[4]) {
-    const float r = 1.0f / p[3];
-    return {(p[0] * r) * target.scale_x + target.offset_x, (p[1] * r) * target.scale_y + target.offset_y, (p[2] * r) * draw.depth_scale + draw.depth_offset, r};
+// Where a vertex that is left lands. Rounding may carry numbers of very different size out of the guard band again; edges
+// are only exact within it. False where they have become no numbers.
+bool land(const DrawContext& draw, const RasterTarget& target, const float p[4], ScreenVertex& out) {
+    out = project(draw, target, p);
+    out.x = min(max(out.x, guard_low), guard_high);
+    out.y = min(max(out.y, guard_low), guard_high);
+    return out.x == out.x && out.y == out.y && abs(out.z) <= 0x1.fffffep127f;
 }
+
+// Takes a polygon apart into triangles. Snapping may have bent an outline that was straight, so that a fan would fold;
+// therefore ears are cut off: corners whose triangle turns the way the polygon does and holds no other.
+class Ears {
+public:
+    void add(std::int64_t x, std::int64_t y, int corner) {
+        if (count_ > 0 && x == x_[count_ - 1] && y == y_[count_ - 1]) return;
+        x_[count_] = x, y_[count_] = y, corner_[count_++] = corner;
+    }
+    template <class Emit>
+    void cut_off(const Emit& emit) {
+        while (count_ > 1 && x_[0] == x_[count_ - 1] && y_[0] == y_[count_ - 1]) --count_;
+        std::int64_t area = 0;
+        for (int i = 1; i + 1 < count_; ++i) area += turn(0, i, i + 1);
+        const std::int64_t sign = area < 0 ? -1 : 1;
+        bool whole = count_ == 3;
+        while (count_ > 3) {
+            int ear = -1;
+            for (int i = 1; i <= count_ && ear < 0; ++i)
+                if (is_ear(i % count_, sign)) ear = i % count_;
+            if (ear < 0) break;
+            if (turn(before(ear), ear, after(ear)) != 0) emit(corner_[before(ear)], corner_[ear], corner_[after(ear)]), whole = false;
+            for (int i = ear; i + 1 < count_; ++i) x_[i] = x_[i + 1], y_[i] = y_[i + 1], corner_[i] = corner_[i + 1];
+            --count_;
+        }
+        // An outline of less than a subpixel's width may even cross itself: what turns the other way would be drawn twice.
+        for (int i = 1; i + 1 < count_; ++i)
+            if (whole || turn(0, i, i + 1) * sign > 0) emit(corner_[0], corner_[i], corner_[i + 1]);
+    }
+
+private:
+    int before(int i) const { return i == 0 ? count_ - 1 : i - 1; }
+    int after(int i) const { return i + 1 == count_ ? 0 : i + 1; }
+    std::int64_t turn(int a, int b, int c) const { return (x_[b] - x_[a]) * (y_[c] - y_[a]) - (x_[c] - x_[a]) * (y_[b] - y_[a]); }
+    bool is_ear(int i, std::int64_t sign) const {
+        const int a = before(i), c = after(i);
+        const std::int64_t t = turn(a, i, c) * sign;
+        if (t < 0) return false;
+        if (t == 0) return true;  // on a straight line: it can go without a triangle
+        for (int p = 0; p < count_; ++p)
+            if (p != a && p != i && p != c && turn(a, i, p) * sign >= 0 && turn(i, c, p) * sign >= 0 && turn(c, a, p) * sign >= 0) return false;
+        return true;
+    }
+
+    std::int64_t x_[max_vertices_per_clipped], y_[max_vertices_per_clipped];
+    int corner_[max_vertices_per_clipped];
+    int count_ = 0;
+};
 
 int target_of(const DrawContext& draw, const Batch& batch, std::uint32_t leading) {
     const int layer = batch.vertices.layer ? batch.vertices.layer[leading] : 0, level = batch.vertices.level ? batch.vertices.level[leading] : 0;
@@ -108,79 +183,109 @@ int target_of(const DrawContext& draw, const Batch& batch, std::uint32_t leading
 }  // namespace
 
 void clip_and_set_up_triangle(const DrawContext& draw, Batch& batch, int primitive) {
-    std::uint32_t corner[3];
+    const std::uint32_t leading = batch.primitives.corner[0][primitive];
+    const int target_index = target_of(draw, batch, leading);
+    if (target_index < 0) {
+        ++batch.statistics.culled_primitives;
+        return;
+    }
+    const RasterTarget& target = draw.targets[target_index];
     ClipVertex polygon[max_vertices_per_clipped], next[max_vertices_per_clipped];
     int outside_all = ~0, count = 3;
     bool valid = true;
     for (int c = 0; c < 3; ++c) {
-        corner[c] = batch.primitives.corner[c][primitive];
-        load(batch, corner[c], polygon[c]);
+        load(draw, target, batch, batch.primitives.corner[c][primitive], polygon[c]);
         valid = valid && finite(polygon[c].position);
         outside_all &= outcode(polygon[c].position, draw.state.rasterizer.depth_clip);
     }
-    const int target_index = target_of(draw, batch, corner[0]);
-    if (!valid || target_index < 0) {
+    if (!valid) {
         ++batch.statistics.culled_primitives;
         return;
     }
     if (outside_all) return;
-    const RasterTarget& target = draw.targets[target_index];
     const PlaneSet planes(draw, target);
+    int cuts = 0;
     for (int k = 0; k < planes.count; ++k) {
         int kept = 0;
         for (int i = 0; i < count; ++i) {
             const ClipVertex &a = polygon[i], &b = polygon[i + 1 == count ? 0 : i + 1];
-            const float da = planes.inside(k, a.position), db = planes.inside(k, b.position);
+            const float da = planes.inside(k, a), db = planes.inside(k, b);
+            // A convex polygon crosses a plane twice; only rounding can make it more, of what is thin beyond measure.
+            if (kept + 2 > max_vertices_per_clipped || cuts == new_vertices_per_clipped) {
+                ++batch.statistics.culled_primitives;
+                return;
+            }
             if (da >= 0) next[kept++] = a;
-            if ((da >= 0) != (db >= 0)) next[kept++] = da >= 0 ? cut(draw, batch, a, b, da / (da - db)) : cut(draw, batch, b, a, db / (db - da));
+            if ((da >= 0) == (db >= 0)) continue;
+            next[kept++] = da >= 0 ? cut(draw, batch, k, a, b, da, db) : cut(draw, batch, k, b, a, db, da);
+            ++cuts;
         }
         count = kept;
         std::copy(next, next + kept, polygon);
         if (count < 3) return;
     }
     ScreenVertex screen[max_vertices_per_clipped];
-    for (int i = 0; i < count; ++i) screen[i] = project(draw, target, polygon[i].position);
-    for (int i = 1; i + 1 < count; ++i) {
-        const ScreenVertex corners[3] = {screen[0], screen[i], screen[i + 1]};
-        const std::uint32_t vertices[3] = {batch.first_vertex + polygon[0].vertex, batch.first_vertex + polygon[i].vertex, batch.first_vertex + polygon[i + 1].vertex};
-        set_up_triangle(draw, batch, corners, vertices, batch.first_vertex + corner[0], batch.primitives.primitive_id[primitive], target_index);
+    Ears ears;
+    for (int i = 0; i < count; ++i) {
+        if (!land(draw, target, polygon[i].position, screen[i])) {
+            ++batch.statistics.culled_primitives;
+            return;
+        }
+        ears.add(to_int_in_range(round_even(screen[i].x * subpixels)), to_int_in_range(round_even(screen[i].y * subpixels)), i);
     }
+    int triangles = 0;
+    ears.cut_off([&](int a, int b, int c) {
+        if (++triangles > max_records_per_clipped) return;
+        const ScreenVertex corners[3] = {screen[a], screen[b], screen[c]};
+        const std::uint32_t vertices[3] = {batch.first_vertex + polygon[a].vertex, batch.first_vertex + polygon[b].vertex, batch.first_vertex + polygon[c].vertex};
+        set_up_triangle(draw, batch, corners, vertices, batch.first_vertex + leading, batch.primitives.primitive_id[primitive], target_index);
+    });
 }
 
 void clip_and_set_up_line(const DrawContext& draw, Batch& batch, int primitive) {
+    const std::uint32_t leading = batch.primitives.corner[0][primitive];
+    const int target_index = target_of(draw, batch, leading);
+    if (target_index < 0) {
+        ++batch.statistics.culled_primitives;
+        return;
+    }
+    const RasterTarget& target = draw.targets[target_index];
     ClipVertex end[2];
     int outside_all = ~0;
     bool valid = true;
     for (int c = 0; c < 2; ++c) {
-        load(batch, batch.primitives.corner[c][primitive], end[c]);
+        load(draw, target, batch, batch.primitives.corner[c][primitive], end[c]);
         valid = valid && finite(end[c].position);
         outside_all &= outcode(end[c].position, draw.state.rasterizer.depth_clip);
     }
-    const int target_index = target_of(draw, batch, end[0].vertex);
-    if (!valid || target_index < 0) {
+    if (!valid) {
         ++batch.statistics.culled_primitives;
         return;
     }
     if (outside_all) return;
-    const RasterTarget& target = draw.targets[target_index];
     const PlaneSet planes(draw, target);
-    const std::uint32_t leading = end[0].vertex;
     for (int k = 0; k < planes.count; ++k) {
-        const float d0 = planes.inside(k, end[0].position), d1 = planes.inside(k, end[1].position);
+        const float d0 = planes.inside(k, end[0]), d1 = planes.inside(k, end[1]);
         if (d0 < 0 && d1 < 0) return;
-        if (d0 < 0) end[0] = cut(draw, batch, end[1], end[0], d1 / (d1 - d0));
-        else if (d1 < 0) end[1] = cut(draw, batch, end[0], end[1], d0 / (d0 - d1));
+        if (d0 < 0) end[0] = cut(draw, batch, k, end[1], end[0], d1, d0);
+        else if (d1 < 0) end[1] = cut(draw, batch, k, end[0], end[1], d0, d1);
     }
-    ++batch.statistics.c_primitives;
     LineRecord r{};
     for (int c = 0; c < 2; ++c) {
-        const ScreenVertex s = project(draw, target, end[c].position);
+        ScreenVertex s;
+        valid = land(draw, target, end[c].position, s) && valid;
+        if (!valid) break;
         r.x[c] = to_int_in_range(round_even(s.x * subpixels));
         r.y[c] = to_int_in_range(round_even(s.y * subpixels));
         r.z[c] = s.z;
         r.inverse_w[c] = s.inverse_w;
         r.corner[c] = batch.first_vertex + end[c].vertex;
     }
+    if (!valid) {
+        ++batch.statistics.culled_primitives;
+        return;
+    }
+    ++batch.statistics.c_primitives;
     if (r.x[0] == r.x[1] && r.y[0] == r.y[1]) {
         ++batch.statistics.culled_primitives;
         return;
@@ -188,8 +293,9 @@ void clip_and_set_up_line(const DrawContext& draw, Batch& batch, int primitive) 
     r.leading = batch.first_vertex + leading;
     r.primitive_id = batch.primitives.primitive_id[primitive];
     r.target = target_index;
-    r.left = std::max(std::min(r.x[0], r.x[1]) >> subpixel_bits, target.clip.left);
-    r.top = std::max(std::min(r.y[0], r.y[1]) >> subpixel_bits, target.clip.top);
+    // A position on the border between two pixels may be the first one's (rasterizer.hpp).
+    r.left = std::max((std::min(r.x[0], r.x[1]) - 1) >> subpixel_bits, target.clip.left);
+    r.top = std::max((std::min(r.y[0], r.y[1]) - 1) >> subpixel_bits, target.clip.top);
     r.right = std::min(std::max(r.x[0], r.x[1]) >> subpixel_bits, target.clip.right - 1);
     r.bottom = std::min(std::max(r.y[0], r.y[1]) >> subpixel_bits, target.clip.bottom - 1);
     if (r.left > r.right || r.top > r.bottom) return;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "pipeline/draw_context.hpp"
+#include "pipeline/fp_environment.hpp"
 #include "pipeline/texel.hpp"
 #include "pipeline/validation.hpp"
 
@@ -32,7 +33,9 @@ Device::Device(const DeviceDesc& desc) : executor_(desc.threads), batch_slots_(s
     if (lanes == 0) {
         const char* forced = std::getenv("NEPHROID_LANES");
         if (forced && *forced) {
-            lanes = std::atoi(forced);
+            char* end = nullptr;
+            const long wanted = std::strtol(forced, &end, 10);
+            lanes = *end == '\0' && wanted > 0 && wanted <= 1024 ? static_cast<int>(wanted) : 0;
             if (lanes == 0) faults_.add("NEPHROID_LANES", "must be 1, 4, 8 or 16");
         }
     }
@@ -73,6 +76,7 @@ Faults Device::clear(const TargetView& view, const glm::vec4& value) {
     if (!view.bound()) faults.add("view", "is cleared, but no texture is bound");
     else validate_view(view, "view", faults);
     if (!faults.empty()) return faults;
+    const FpEnvironment fp;
     const Color4 color{value.r, value.g, value.b, value.a};
     switch (view.texture->format()) {
         case Format::R32F: fill<Format::R32F>(executor_, view, color); break;

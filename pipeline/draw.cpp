@@ -1,5 +1,6 @@
 // A draw from its call to its end: resolve, then chunk by chunk the front end, stream output and the back end.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
@@ -175,6 +176,7 @@ void resolve_targets(DrawContext& draw, const DrawCall& call, const TargetView* 
             t.height = shape ? shape->height(reference->first_level + level) : 1;
             for (int c = 0; c < draw.color_count; ++c) {
                 const TargetView& view = call.render_targets[c];
+                if (!view.bound()) continue;  // allowed where nothing is rasterized
                 const int l = view.first_level + level;
                 t.color[c] = view.texture->row(0, l, view.first_layer + layer);
                 t.color_pitch[c] = std::ptrdiff_t{view.texture->layout().level[l].row_pitch} * bytes_per_texel(view.texture->format());
@@ -194,9 +196,11 @@ void resolve_targets(DrawContext& draw, const DrawCall& call, const TargetView* 
             t.scale_y = height * -0.5f;
             t.offset_y = y + height * 0.5f;
             t.viewport = {pixel_floor(x * subpixels), pixel_floor(y * subpixels), pixel_floor((x + width) * subpixels), pixel_floor((y + height) * subpixels)};
-            // Pixels whose centres lie in the viewport.
-            t.clip = {std::max(0, -pixel_floor(0.5f - x)), std::max(0, -pixel_floor(0.5f - y)), std::min(t.width, -pixel_floor(0.5f - (x + width))),
-                      std::min(t.height, -pixel_floor(0.5f - (y + height)))};
+            // Direct3D's implicit scissor: the viewport's edges, rounded down. In double, so that edges on the border of the
+            // first level lie on the border of every level.
+            const auto edge = [](float first_level_edge, int size, float first_size) { return to_int(static_cast<float>(std::floor(double{first_level_edge} * size / double{first_size}))); };
+            t.clip = {std::max(0, edge(v.x, t.width, first_width)), std::max(0, edge(v.y, t.height, first_height)), std::min(t.width, edge(v.x + v.width, t.width, first_width)),
+                      std::min(t.height, edge(v.y + v.height, t.height, first_height))};
             if (state.rasterizer.scissor) {
                 const Rect s = level == 0 ? state.scissor
                                           : Rect{pixel_floor(static_cast<float>(state.scissor.left) * ratio_x), pixel_floor(static_cast<float>(state.scissor.top) * ratio_y),
@@ -338,7 +342,7 @@ DrawResult Device::draw(const ProgramRef& program, const PipelineState& state, c
     for (const TargetView& view : call.render_targets)
         if (view.bound() && !reference) reference = &view;
     if (!reference && call.depth_target.bound()) reference = &call.depth_target;
-    draw.rasterize = !state.rasterizer.discard && traits.stream[0].has_position && reference;
+    draw.rasterize = !state.rasterizer.discard && traits.stream[0].has_position && reference && (traits.has_pixel || state.depth.used());
     draw.target_layers = reference ? reference->layer_count : 1;
     draw.target_levels = reference ? reference->level_count : 1;
     draw.tile_count = count_tiles(draw, reference);
@@ -388,7 +392,8 @@ DrawResult Device::draw(const ProgramRef& program, const PipelineState& state, c
         streams_out = true;
         const int stream_corners = vertices_per_primitive(last);
         const std::int64_t used = target.append ? *target.buffer.streamed_count : 0;
-        cursors[s].data = static_cast<std::byte*>(target.buffer.data) + used * target.buffer.stride;
+        cursors[s].bound = true;
+        if (target.buffer.data) cursors[s].data = static_cast<std::byte*>(target.buffer.data) + used * target.buffer.stride;
         cursors[s].capacity = (target.buffer.capacity - used) / stream_corners;
     }
     draw.batch_primitives = primitives_per_batch(traits, state.topology);

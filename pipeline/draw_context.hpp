@@ -24,6 +24,8 @@ inline constexpr int subpixels = 1 << subpixel_bits;
 // functions within a tile fit 32.
 inline constexpr int guard_band = 8192;
 inline constexpr float guard_low = -guard_band, guard_high = max_texture_size + guard_band;
+// Behind the eye is outside; so small a w that it has lost its precision, and its reciprocal may overflow, is too.
+inline constexpr float smallest_w = 0x1p-126f;
 
 // One level of one layer of the bound targets.
 struct RasterTarget {

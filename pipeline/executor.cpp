@@ -3,33 +3,76 @@
 #include "pipeline/fp_environment.hpp"
 
 #if NEPHROID_TBB
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
-#include <thread>
+#include <chrono>
+#include <optional>
 #endif
 
 namespace nephroid {
 
 #if NEPHROID_TBB
 
+namespace {
+
+// [first, end), of which a split takes the last one away. Thus all tasks of a parallel_for come into being on the calling
+// thread, whose pool of task objects has a known size, and no worker ever makes one.
+struct Workers {
+    int first, end;
+    Workers(int first_worker, int end_worker) : first(first_worker), end(end_worker) {}
+    Workers(Workers& from, tbb::split) : first(from.end - 1), end(from.end) { --from.end; }
+    bool empty() const { return first == end; }
+    bool is_divisible() const { return end - first > 1; }
+};
+
+template <class Body>
+void on_workers(int count, const Body& body) {
+    tbb::parallel_for(Workers(0, count), [&](const Workers& w) { body(w.first); }, tbb::simple_partitioner{});
+}
+
+// The number of threads that the calling thread's pool is ready for.
+thread_local int warm_for = 0;
+
+// More threads than cores are had only where TBB's limit allows it; beyond this nobody can want any.
+constexpr int most_threads = 256;
+
+}  // namespace
+
 struct Executor::Arena {
+    std::optional<tbb::global_control> limit;
     tbb::task_arena arena;
-    explicit Arena(int threads) : arena(threads) {}
+    explicit Arena(int threads) {
+        if (threads > tbb::info::default_concurrency()) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t{most_threads});
+        arena.initialize(threads);
+    }
+
+    // TBB's threads come into being when first needed, and task objects are taken from a pool of the calling thread that
+    // grows when it is empty: all of that now, not in a frame. Twice as many tasks as any pass has are alive at the same
+    // time, since a pass may begin before the last one's are all back.
+    void warm_up(int threads) {
+        warm_for = threads;
+        std::atomic<int> arrived{0};
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+        const int many = 2 * threads;
+        arena.execute([&] {
+            on_workers(many, [&](int) {
+                ++arrived;
+                while (arrived.load() < threads && std::chrono::steady_clock::now() < deadline) {}
+            });
+        });
+    }
 };
 
 Executor::Executor(int threads) : threads_(threads), arena_(nullptr) {
-    if (threads_ <= 0) threads_ = static_cast<int>(std::thread::hardware_concurrency());
-    if (threads_ <= 1) {
-        threads_ = 1;
-        return;
-    }
+    if (threads_ <= 0) threads_ = tbb::info::default_concurrency();
+    if (threads_ > most_threads) threads_ = most_threads;
+    if (threads_ <= 1) return;
     arena_ = new Arena(threads_);
-    // TBB's threads and its pools of task objects come into being when first needed; have that now, not in a frame.
-    constexpr int many = 4096;
-    std::atomic<int> sum{0};
-    arena_->arena.execute([&] { tbb::parallel_for(0, many, 1, [&](int i) { sum.fetch_add(i & 1, std::memory_order_relaxed); }, tbb::simple_partitioner{}); });
+    arena_->warm_up(threads_);
 }
 
 Executor::~Executor() { delete arena_; }
@@ -41,17 +84,14 @@ void Executor::run(int count, Call call, const void* context) {
         for (int i = 0; i < count; ++i) call(context, i, 0);
         return;
     }
-    // One TBB task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap.
+    if (warm_for < threads_) arena_->warm_up(threads_);
+    // One task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap.
     std::atomic<int> next{0};
-    const int workers = threads_ < count ? threads_ : count;
     arena_->arena.execute([&] {
-        tbb::parallel_for(
-            0, workers, 1,
-            [&](int worker) {
-                const FpEnvironment fp;
-                for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) call(context, i, worker);
-            },
-            tbb::simple_partitioner{});
+        on_workers(threads_ < count ? threads_ : count, [&](int worker) {
+            const FpEnvironment fp;
+            for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) call(context, i, worker);
+        });
     });
 }
 

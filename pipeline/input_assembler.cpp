@@ -100,8 +100,10 @@ void assemble_batch(const DrawContext& draw, std::int64_t first_primitive, int c
             batch.primitive_instances[i] = batch.primitive_instances[count - 1];
         }
     }
-    if (draw.first_instance)
+    if (draw.first_instance) {
         for (int i = 0; i < padded(batch.vertex_count); ++i) batch.vertex_instances[i] += draw.first_instance;
+        for (int i = 0; i < padded(count); ++i) batch.primitive_instances[i] += draw.first_instance;
+    }
 }
 
 }  // namespace nephroid

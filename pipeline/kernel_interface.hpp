@@ -72,6 +72,7 @@ struct alignas(64) FragmentGroup {
     std::uint32_t mask;            // lanes that are fragments
     // One primitive for all lanes (`uniform`: index 0 of each), or one per lane.
     bool uniform;
+    bool constant;      // all three corners are one vertex, whose values every fragment has: a point
     bool rows_of_four;  // lanes are rows of four neighbours from (x[0], y[0]) on, row after row
     std::uint32_t corner[3][N];  // records to interpolate between
     std::uint32_t leading[N];    // record that flat values come from

@@ -84,9 +84,14 @@ inline float combine(BlendOp op, float source, float destination, float source_f
 }
 inline Color4 blend(const BlendState& state, Color4 source, Color4 destination) {
     const Color4 fs = factor(state.source, source, destination), fd = factor(state.destination, source, destination);
-    Color4 result;
-    for (int c = 0; c < 3; ++c) result[c] = combine(state.op, source[c], destination[c], fs[c], fd[c]);
-    result[3] = combine(state.alpha_op, source[3], destination[3], factor(state.source_alpha, source, destination)[3], factor(state.destination_alpha, source, destination)[3]);
+    Color4 result = source;
+    // (One, Zero) is no blending: the target is only read for what the mask keeps, and may hold infinities.
+    BlendState unmasked = state;
+    unmasked.write_mask = 0xf;
+    if (!(unmasked == blend_opaque)) {
+        for (int c = 0; c < 3; ++c) result[c] = combine(state.op, source[c], destination[c], fs[c], fd[c]);
+        result[3] = combine(state.alpha_op, source[3], destination[3], factor(state.source_alpha, source, destination)[3], factor(state.destination_alpha, source, destination)[3]);
+    }
     for (int c = 0; c < 4; ++c)
         if (!(state.write_mask >> c & 1u)) result[c] = destination[c];
     return result;
@@ -100,6 +105,9 @@ inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t
         std::byte* at = base + group.y[l] * pitch + group.x[l] * bytes_per_texel(format);
         Color4 color;
         std::memcpy(&color, colors + 4 * l, sizeof color);
+        // What enters the blender of a fixed-point target is clamped to its range first, as in Direct3D.
+        if constexpr (mode != MergeMode::Opaque && (format == Format::RGBA8 || format == Format::RGBA8Srgb))
+            for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
         if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
         if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
         store_texel<format>(at, color);

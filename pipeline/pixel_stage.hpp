@@ -42,17 +42,32 @@ inline void interpolate_uniform(glm::vec<L, F, glm::defaultp>& out, const glm::v
     for (int k = 0; k < L; ++k) interpolate_uniform(out[k], a[k], b[k], c[k], b1, b2);
 }
 
+template <class V>
+inline constexpr int varying_count = 0;
+template <class V> requires(requires { V::varyings; })
+inline constexpr int varying_count<V> = static_cast<int>(std::tuple_size_v<decltype(V::varyings)>);
+
 template <class F, class VF, class Vf>
-inline VF pixel_input(const FragmentGroup<lanes_of<F>>& group, const std::byte* records, bool uniform) {
+inline VF pixel_input(const FragmentGroup<lanes_of<F>>& group, const std::byte* records) {
     VF in{};
-    if constexpr (requires { VF::varyings; }) {
+    // Where nothing varies there may be no records.
+    if constexpr (constexpr int count = varying_count<VF>; count > 0) {
         const F b1 = load_lanes<F>(group.b1), b2 = load_lanes<F>(group.b2), l1 = load_lanes<F>(group.l1), l2 = load_lanes<F>(group.l2);
-        constexpr int count = static_cast<int>(std::tuple_size_v<decltype(VF::varyings)>);
-        if (uniform) {
+        if (group.constant) {
+            const VF vertex = group.uniform ? VF{} : gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
+            [&]<int... i>(std::integer_sequence<int, i...>) {
+                [[maybe_unused]] const auto fill = [&](const auto& wide, const auto& narrow) {
+                    if (group.uniform) spread(in.*wide.member, reinterpret_cast<const Vf*>(records)[group.leading[0]].*narrow.member);
+                    else in.*wide.member = vertex.*wide.member;
+                };
+                (fill(std::get<i>(VF::varyings), std::get<i>(Vf::varyings)), ...);
+            }
+            (std::make_integer_sequence<int, count>{});
+        } else if (group.uniform) {
             const Vf* vertices = reinterpret_cast<const Vf*>(records);
             const Vf &a = vertices[group.corner[0][0]], &b = vertices[group.corner[1][0]], &c = vertices[group.corner[2][0]], &leading = vertices[group.leading[0]];
             [&]<int... i>(std::integer_sequence<int, i...>) {
-                const auto fill = [&](const auto& wide, const auto& narrow, auto mode) {
+                [[maybe_unused]] const auto fill = [&](const auto& wide, const auto& narrow, auto mode) {
                     if constexpr (mode() == Interpolation::Flat) spread(in.*wide.member, leading.*narrow.member);
                     else if constexpr (mode() == Interpolation::Smooth) interpolate_uniform(in.*wide.member, a.*narrow.member, b.*narrow.member, c.*narrow.member, b1, b2);
                     else interpolate_uniform(in.*wide.member, a.*narrow.member, b.*narrow.member, c.*narrow.member, l1, l2);
@@ -64,7 +79,7 @@ inline VF pixel_input(const FragmentGroup<lanes_of<F>>& group, const std::byte* 
             const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
             const VF c = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[2])), leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
             [&]<int... i>(std::integer_sequence<int, i...>) {
-                const auto fill = [&](const auto& wide, auto mode) {
+                [[maybe_unused]] const auto fill = [&](const auto& wide, auto mode) {
                     if constexpr (mode() == Interpolation::Flat) in.*wide.member = leading.*wide.member;
                     else if constexpr (mode() == Interpolation::Smooth) in.*wide.member = interpolate(a.*wide.member, b.*wide.member, c.*wide.member, b1, b2);
                     else in.*wide.member = interpolate(a.*wide.member, b.*wide.member, c.*wide.member, l1, l2);
@@ -127,7 +142,7 @@ void shade_pixels(const PixelWork& work) {
         if constexpr (std::is_void_v<In>) {
             store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(group)));
         } else {
-            const VF in = pixel_input<F, VF, Vf>(group, work.records, group.uniform);
+            const VF in = pixel_input<F, VF, Vf>(group, work.records);
             if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(group)));
             else store_result<F>(results, group.mask, shader.template operator()<F>(in));
         }

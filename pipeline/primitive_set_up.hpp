@@ -31,7 +31,7 @@ inline LaneInt<F> lane_target(const DrawContext& draw, const Batch& batch, LaneI
     const I layer = v.layer ? gather(v.layer, leading) : I(0), level = v.level ? gather(v.level, leading) : I(0);
     const LaneMask<F> named = (layer >= 0) & (layer < draw.target_layers) & (level >= 0) & (level < draw.target_levels);
     valid = valid & named;
-    return select(named, layer * draw.target_levels + level, I(0));
+    return select(named, layer, I(0)) * draw.target_levels + select(named, level, I(0));
 }
 
 template <class F> inline F min3(F a, F b, F c) { return min(min(a, b), c); }
@@ -68,7 +68,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
             x[c] = (clip_x * inverse_w[c]) * viewport.scale_x + viewport.offset_x;
             y[c] = (clip_y * inverse_w[c]) * viewport.scale_y + viewport.offset_y;
             z[c] = (clip_z * inverse_w[c]) * draw.depth_scale + draw.depth_offset;
-            clean = clean & (clip_w > 0.0f) & (inverse_w[c] > 0.0f) & (inverse_w[c] <= 0x1.fffffep127f);
+            clean = clean & (clip_w >= smallest_w) & (inverse_w[c] > 0.0f);
             clean = clean & (x[c] >= guard_low) & (x[c] <= guard_high) & (y[c] >= guard_low) & (y[c] <= guard_high) & (abs(z[c]) <= 0x1.fffffep127f);
             if (state.depth_clip) clean = clean & (clip_z >= 0.0f) & (clip_z <= clip_w);
         }
@@ -220,8 +220,11 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         const F clip_x = gather(vertices.position[0], vertex), clip_y = gather(vertices.position[1], vertex);
         const F clip_z = gather(vertices.position[2], vertex), clip_w = gather(vertices.position[3], vertex);
         batch.statistics.c_invocations += static_cast<unsigned>(__builtin_popcount(mask_bits(active)));
-        // A point is inside if its centre is, as in OpenGL; NaN is outside.
-        drawn = drawn & (clip_w > 0.0f) & (abs(clip_x) <= clip_w) & (abs(clip_y) <= clip_w) & (clip_w <= 0x1.fffffep127f) & (abs(clip_z) <= 0x1.fffffep127f);
+        constexpr float largest = 0x1.fffffep127f;
+        drawn = drawn & (abs(clip_x) <= largest) & (abs(clip_y) <= largest) & (abs(clip_z) <= largest) & (abs(clip_w) <= largest);
+        batch.statistics.culled_primitives += static_cast<unsigned>(__builtin_popcount(mask_bits(active & !drawn)));
+        // A point is inside if its centre is, as in OpenGL.
+        drawn = drawn & (clip_w > 0.0f) & (abs(clip_x) <= clip_w) & (abs(clip_y) <= clip_w);
         if (draw.state.rasterizer.depth_clip) drawn = drawn & (clip_z >= 0.0f) & (clip_z <= clip_w);
         if (none(drawn)) continue;
         const F inverse_w = F(1.0f) / clip_w;

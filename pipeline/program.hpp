@@ -114,7 +114,7 @@ struct RecordLayout {
     bool has_varyings() const { return has_smooth || has_linear || has_flat; }
     // Per 32-bit component of the struct: how the clipper makes it for a new vertex.
     ComponentMode mode[max_record_components] = {};
-    bool is_float[max_record_components] = {};  // known to be a float because the varyings say so
+    bool is_float[max_record_components] = {};  // known to be a float: a varying, the position, the point size
 };
 
 struct ProgramTraits {
@@ -149,6 +149,13 @@ RecordLayout record_layout() {
     layout.has_layer = requires(V v) { v.layer; };
     layout.has_level = requires(V v) { v.level; };
     for (ComponentMode& mode : layout.mode) mode = ComponentMode::Unused;
+    const auto known_float = [&](const V& v, const auto& member) {
+        const std::ptrdiff_t first = (reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&v)) / 4;
+        for (std::size_t c = 0; c < sizeof member / 4; ++c) layout.is_float[first + c] = true;
+    };
+    const V whole{};
+    if constexpr (requires { whole.position; }) known_float(whole, whole.position);
+    if constexpr (requires { whole.point_size; }) known_float(whole, whole.point_size);
     if constexpr (requires { V::varyings; }) {
         const V probe{};
         const auto note = [&](const auto& varying) {

@@ -137,7 +137,8 @@ private:
     void add_block(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.uniform = true;
-        g.rows_of_four = lanes > 1;
+        g.constant = false;
+        g.rows_of_four = whole_rows(x, y);
         const I px = I(x) + lane_x_, py = I(y) + lane_y_;
         store_lanes(g.x, px);
         store_lanes(g.y, py);
@@ -151,6 +152,11 @@ private:
         g.primitive_id[0] = r.primitive_id;
         g.front_facing[0] = r.front_facing;
         add_group();
+    }
+
+    // Whether a block's rows of four can be read as such: none lies behind the target's last row or runs into the next one.
+    bool whole_rows(int x, int y) const {
+        return lanes > 1 && y + block_height <= target_.height && (x + block_width) * static_cast<int>(sizeof(float)) <= target_.depth_pitch;
     }
 
     // Barycentric weights, depth and w of a group's fragments, as far as this draw needs them.
@@ -208,14 +214,14 @@ private:
         for (int y = top & -block_height; y <= bottom; y += block_height) {
             for (int x = left & -block_width; x <= right; x += block_width) {
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
-                add_splat(r, px, py, true, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
+                add_splat(r, px, py, whole_rows(x, y), mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
     }
 
     void add_splat(const PointRecord& r, I px, I py, bool rows_of_four, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.uniform = true;
+        g.uniform = g.constant = true;
         g.rows_of_four = rows_of_four;
         store_lanes(g.x, px);
         store_lanes(g.y, py);
@@ -255,7 +261,7 @@ private:
         const std::int32_t* v = steep ? r.x : r.y;
         for (int column = steep ? top : left; column <= (steep ? bottom : right); ++column) {
             int row = 0;
-            if (!line_covers(u, v, column, row)) continue;
+            if (!line_covers(u, v, steep, column, row)) continue;
             const int x = steep ? row : column, y = steep ? column : row;
             if (x < left || x > right || y < top || y > bottom) continue;
             add_line_fragment(r, steep, x, y);
@@ -265,24 +271,33 @@ private:
     // A pixel is drawn if the line leaves the diamond of half a pixel round its centre: it touches it, and does not end in
     // it. Within a column the line comes nearest to a centre where it crosses the middle of the column, or at its end
     // before that. Exact: distances times the length along u, in subpixels.
-    static bool line_covers(const std::int32_t u[2], const std::int32_t v[2], int column, int& row) {
+    static bool line_covers(const std::int32_t u[2], const std::int32_t v[2], bool steep, int column, int& row) {
         constexpr std::int64_t half = subpixels / 2;
         const std::int64_t du = std::abs(u[1] - u[0]), dv = u[1] >= u[0] ? v[1] - v[0] : v[0] - v[1];
         const int first = u[1] >= u[0] ? 0 : 1, last = 1 - first;  // by rising u
         const std::int64_t middle = std::int64_t{column} * subpixels + half, nearest = std::clamp<std::int64_t>(middle, u[first], u[last]);
         const std::int64_t at = std::int64_t{v[first]} * du + dv * (nearest - u[first]);  // v there, times du
+        // On the border between two pixels it is the first one's: there lies its bottom or right corner.
         const std::int64_t unit = subpixels * du;
-        row = static_cast<int>(at >= 0 ? at / unit : -((-at + unit - 1) / unit));
-        const std::int64_t centre = (std::int64_t{row} * subpixels + half) * du;
-        const std::int64_t across = std::abs(at - centre), along = std::abs(nearest - middle) * du;
-        if (across + along > half * du || (across + along == half * du && along != 0)) return false;
-        const std::int64_t end_u = std::abs(u[1] - middle), end_v = std::abs(std::int64_t{v[1]} - (std::int64_t{row} * subpixels + half));
-        return end_u + end_v >= half;
+        row = static_cast<int>(at > 0 ? (at - 1) / unit : -((-at + unit) / unit));
+        const std::int64_t centre = std::int64_t{row} * subpixels + half;
+        return in_diamond(nearest - middle, at - centre * du, du, steep) && !in_diamond(u[1] - middle, v[1] - centre, 1, steep);
+    }
+
+    // True for a point at (along, across / scale) from a centre. Of the diamond's border Direct3D counts in the two lower
+    // edges and the bottom corner and, where the line is steep, the right corner.
+    static bool in_diamond(std::int64_t along, std::int64_t across, std::int64_t scale, bool steep) {
+        constexpr std::int64_t half = subpixels / 2;
+        const std::int64_t distance = std::abs(along) * scale + std::abs(across);
+        if (distance != half * scale) return distance < half * scale;
+        const std::int64_t right = steep ? across : along, down = steep ? along : across;
+        return down > 0 || (down == 0 && right > 0 && steep);
     }
 
     void add_line_fragment(const LineRecord& r, bool steep, int x, int y) {
         Group& g = groups_[count_];
         g.uniform = true;
+        g.constant = false;
         g.rows_of_four = false;
         const float length = static_cast<float>(steep ? r.y[1] - r.y[0] : r.x[1] - r.x[0]);
         const float way = static_cast<float>((steep ? y : x) * subpixels + subpixels / 2 - (steep ? r.y[0] : r.x[0]));
@@ -326,6 +341,7 @@ private:
         std::uint32_t mask = mask_bits(first_lanes<F>(packed_));
         packed_ = 0;
         g.uniform = false;
+        g.constant = draw_.raster_topology == Topology::PointList;
         g.rows_of_four = false;
         const I record = load_lanes<I>(packed_record_), px = load_lanes<I>(g.x), py = load_lanes<I>(g.y);
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);

@@ -1,5 +1,7 @@
 #include "pipeline/srgb.hpp"
 
+#include <bit>
+
 namespace nephroid {
 
 namespace {
@@ -20,10 +22,16 @@ constexpr double decode(double v) {
     return x2 * fifth_root(x2);
 }
 
+// The smallest float that is not less than x > 0.
+constexpr float round_up(double x) {
+    const float f = static_cast<float>(x);
+    return static_cast<double>(f) < x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(f) + 1) : f;
+}
+
 constexpr SrgbTables make_tables() {
     SrgbTables t{};
     for (int k = 0; k < 256; ++k) t.linear[k] = static_cast<float>(decode(k / 255.0));
-    for (int k = 0; k < 255; ++k) t.threshold[k] = static_cast<float>(decode((k + 0.5) / 255.0));
+    for (int k = 0; k < 255; ++k) t.threshold[k] = round_up(decode((k + 0.5) / 255.0));
     return t;
 }
 

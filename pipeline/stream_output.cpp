@@ -16,10 +16,9 @@ Topology topology_of(const DrawContext& draw) {
     return draw.program.traits->has_geometry ? draw.program.traits->geometry_output : draw.input_topology;
 }
 
-// Varying components are floats; a NaN among them is stored as the one NaN.
+// A NaN among the components that are known to be floats is stored as the one NaN.
 void store_record(std::byte* to, const std::byte* from, const RecordLayout& layout) {
     std::memcpy(to, from, static_cast<std::size_t>(layout.bytes));
-    if (!layout.has_varyings()) return;
     for (int c = 0; c < layout.bytes / 4; ++c) {
         if (!layout.is_float[c]) continue;
         float value;
@@ -34,7 +33,7 @@ StreamPlaces place_streams(const DrawContext& draw, Batch& batch, StreamCursor c
     StreamPlaces places{};
     for (int s = 0; s < draw.program.traits->stream_count; ++s) {
         StreamCursor& cursor = cursors[s];
-        if (!cursor.data) continue;
+        if (!cursor.bound) continue;
         const int count = primitives_of(draw, batch, s).count;
         places.first[s] = cursor.next;
         places.count[s] = static_cast<int>(std::clamp<std::int64_t>(cursor.capacity - cursor.next, 0, count));
@@ -49,7 +48,7 @@ StreamPlaces place_streams(const DrawContext& draw, Batch& batch, StreamCursor c
 void write_streams(const DrawContext& draw, const Batch& batch, const StreamPlaces& places, const StreamCursor cursors[max_streams]) {
     const int corners = vertices_per_primitive(topology_of(draw));
     for (int s = 0; s < draw.program.traits->stream_count; ++s) {
-        if (!cursors[s].data || places.count[s] == 0) continue;
+        if (!cursors[s].bound || places.count[s] == 0) continue;
         const RecordLayout& layout = draw.program.traits->stream[s];
         const std::size_t bytes = static_cast<std::size_t>(layout.bytes);
         const std::byte* records = draw.program.traits->has_geometry ? batch.stream[s].out.records : batch.shaded.records;

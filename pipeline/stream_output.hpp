@@ -11,7 +11,8 @@
 namespace nephroid {
 
 struct StreamCursor {
-    std::byte* data = nullptr;  // null: unbound
+    bool bound = false;
+    std::byte* data = nullptr;  // null where the buffer holds nothing
     std::int64_t capacity = 0;  // primitives that fit, from the stream's start
     std::int64_t next = 0;      // primitives so far, fitting or not
 };

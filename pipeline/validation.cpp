@@ -1,5 +1,7 @@
 #include "pipeline/validation.hpp"
 
+#include <algorithm>
+
 namespace nephroid {
 
 namespace {
@@ -31,10 +33,28 @@ void validate_input(const ProgramRef& program, const PipelineState& state, const
     if (call.first >= 0 && call.first > available) faults.add("first", "lies behind the end", call.first, available);
     else if (call.first >= 0 && call.count >= 0 && call.count > available - call.first) faults.add("count", "reaches behind the end", call.count, available - call.first);
     if (call.indices && source.has_buffer && traits.vertex_input.bytes && call.indices->size() > 0) {
-        const std::int64_t largest = std::int64_t{call.indices->largest()} + call.base_vertex;
+        const bool strip = state.topology == Topology::LineStrip || state.topology == Topology::TriangleStrip;
+        std::int64_t largest = std::int64_t{call.indices->largest()} + call.base_vertex;
+        // Most draws are settled by what was found when the indices were made. A buffer of several meshes may name vertices
+        // that this draw, with its base vertex, does not; and in a list the value that cuts strips is an index.
+        const bool in_range = call.first >= 0 && call.count >= -1 && call.first <= available && (call.count < 0 || call.count <= available - call.first);
+        if (in_range && (largest >= source.count || (call.indices->has_cuts() && !strip))) {
+            largest = -1;
+            const std::uint32_t* index = call.indices->data() + call.first;
+            for (std::int64_t i = 0, count = call.count < 0 ? available - call.first : call.count; i < count; ++i)
+                if (!strip || index[i] != IndexBuffer::cut) largest = std::max(largest, std::int64_t{index[i]} + call.base_vertex);
+        }
         if (largest >= source.count) faults.add("indices", "name a vertex behind the end of the buffer", largest, source.count - 1);
         if (call.base_vertex < 0) faults.add("base_vertex", "must not be negative", call.base_vertex, 0);
     }
+}
+
+// True where two buffers share memory.
+bool overlap(const BufferView& a, const BufferView& b) {
+    if (!a.data || !b.data) return false;
+    const auto first = [](const BufferView& v) { return reinterpret_cast<std::uintptr_t>(v.data); };
+    const auto end = [&](const BufferView& v) { return first(v) + static_cast<std::uintptr_t>(v.capacity) * static_cast<unsigned>(v.stride); };
+    return first(a) < end(b) && first(b) < end(a);
 }
 
 void validate_streams(const ProgramRef& program, const DrawCall& call, Faults& faults) {
@@ -44,17 +64,19 @@ void validate_streams(const ProgramRef& program, const DrawCall& call, Faults& f
         if (!target.bound) continue;
         if (s >= traits.stream_count) faults.add(stream_names[s], "is bound, but the program has no such stream", s, traits.stream_count - 1);
         else if (target.buffer.type != traits.stream[s].type) faults.add(stream_names[s], "has elements of another type than the stream", target.buffer.stride, traits.stream[s].bytes);
-        if (call.vertices.has_buffer && target.buffer.data && target.buffer.data == call.vertices.buffer.data)
+        if (call.vertices.has_buffer && overlap(target.buffer, call.vertices.buffer))
             faults.add(stream_names[s], "is the buffer that the draw reads its vertices from");
         for (int other = 0; other < s; ++other)
-            if (call.stream_out[other].bound && target.buffer.data && call.stream_out[other].buffer.data == target.buffer.data)
+            if (call.stream_out[other].bound && overlap(target.buffer, call.stream_out[other].buffer))
                 faults.add(stream_names[s], "is bound to another stream, too", s, other);
     }
 }
 
 bool overlap(const TargetView& a, const TargetView& b) {
-    return a.texture == b.texture && a.first_level < b.first_level + b.level_count && b.first_level < a.first_level + a.level_count &&
-           a.first_layer < b.first_layer + b.layer_count && b.first_layer < a.first_layer + a.layer_count;
+    const auto meet = [](std::int64_t first, std::int64_t count, std::int64_t other_first, std::int64_t other_count) {
+        return first < other_first + other_count && other_first < first + count;
+    };
+    return a.texture == b.texture && meet(a.first_level, a.level_count, b.first_level, b.level_count) && meet(a.first_layer, a.layer_count, b.first_layer, b.layer_count);
 }
 
 void validate_targets(const ProgramRef& program, const PipelineState& state, const DrawCall& call, Faults& faults) {
@@ -123,10 +145,13 @@ void validate_view(const TargetView& view, const char* object, Faults& faults) {
         faults.add(t.faults());
         return;
     }
-    if (view.first_level < 0 || view.level_count < 1 || view.first_level + view.level_count > t.mip_levels())
-        faults.add(object, "names levels that the texture does not have", view.first_level + view.level_count, t.mip_levels());
-    else if (view.first_layer < 0 || view.layer_count < 1 || view.first_layer + view.layer_count > t.slices(view.first_level + view.level_count - 1))
-        faults.add(object, "names layers that the texture does not have", view.first_layer + view.layer_count, t.slices(view.first_level + view.level_count - 1));
+    const std::int64_t levels_end = std::int64_t{view.first_level} + view.level_count, layers_end = std::int64_t{view.first_layer} + view.layer_count;
+    if (view.first_level < 0 || view.level_count < 1 || levels_end > t.mip_levels()) {
+        faults.add(object, "names levels that the texture does not have", levels_end, t.mip_levels());
+        return;
+    }
+    const int slices = t.slices(static_cast<int>(levels_end) - 1);
+    if (view.first_layer < 0 || view.layer_count < 1 || layers_end > slices) faults.add(object, "names layers that the texture does not have", layers_end, slices);
 }
 
 std::int64_t input_count(const DrawCall& call) {

@@ -2,6 +2,8 @@
 //   in:  vertex and instance ids of a batch's distinct vertices, the vertex buffer
 //   out: clip-space positions and the other system values, one array each; whole vertex structs, one after another
 #pragma once
+#include <cstring>
+
 #include "pipeline/kernel_interface.hpp"
 #include "pipeline/program.hpp"
 
@@ -17,8 +19,8 @@ template <class V>
 inline V gather_records(const std::byte* records, LaneInt<typename LaneTypeOf<V>::type> index) {
     using F = typename LaneTypeOf<V>::type;
     constexpr int components = component_count<V>;
-    V result;
-    F* out = reinterpret_cast<F*>(&result);
+    // The members may be integers: they are moved as floats in an array of their own, never through a pointer of another type.
+    F out[components];
     const float* base = reinterpret_cast<const float*>(records);
     const LaneInt<F> at = index * components;
     if constexpr (components >= 4) {
@@ -28,6 +30,8 @@ inline V gather_records(const std::byte* records, LaneInt<typename LaneTypeOf<V>
     } else {
         for (int c = 0; c < components; ++c) out[c] = gather(base + c, at);
     }
+    V result;
+    std::memcpy(static_cast<void*>(&result), out, sizeof result);
     return result;
 }
 
@@ -36,7 +40,8 @@ template <class V>
 inline void store_records(std::byte* records, const std::int32_t* offset, const V& value) {
     using F = typename LaneTypeOf<V>::type;
     constexpr int components = component_count<V>;
-    const F* in = reinterpret_cast<const F*>(&value);
+    F in[components];
+    std::memcpy(in, &value, sizeof value);
     float* base = reinterpret_cast<float*>(records);
     if constexpr (components >= 4) {
         int c = 0;

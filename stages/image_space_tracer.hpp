@@ -103,13 +103,13 @@ private:
 
     template <class F>
     Hit<F> bisection(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
-        // As far as the scene's bounds.
+        // A little farther than the scene's bounds, so that a receiver which is a bound is met well before.
         F leaves(reach);
         for (int k = 0; k < 3; ++k) {
             const F inverse = F(1.0f) / direction[k];
             leaves = min(leaves, max((F(low[k]) - origin[k]) * inverse, (F(high[k]) - origin[k]) * inverse));
         }
-        leaves = max(leaves, F(0.0f)) * F(1.001f) + F(reach * 1e-4f);
+        leaves = max(leaves, F(0.0f)) * F(1.01f) + F(reach * 1e-3f);
         F before(0.0f), behind = leaves, value_before(1.0f), value_behind(-1.0f);
         LaneMask<F> found(false);
         for (int i = 1; i <= steps; ++i) {

@@ -32,14 +32,16 @@ struct ReceiverMap {
         return {LaneInt<F>(0), p.u, p.v, p.nearness};
     }
 
-    // How near the receiver is at a place, interpolated where all four texels round it have one; 0 where none is.
+    // How near the receiver is at a place, interpolated where all four texels round it have one; 0 where none is. In the
+    // half texel along a face's border the plane through the last texels goes on: nearness is linear on a plane, and a
+    // border that stood still there would stand off the receiver by more than a ray's last step.
     template <class F>
     F receiver(const Place<F>& p) const {
-        const F side(static_cast<float>(size)), x = p.u * side - F(0.5f), y = p.v * side - F(0.5f), fx = floor(x), fy = floor(y);
-        const LaneInt<F> last(size - 1), x0 = min(max(to_int(fx), LaneInt<F>(0)), last), y0 = min(max(to_int(fy), LaneInt<F>(0)), last);
-        const LaneInt<F> x1 = min(x0 + LaneInt<F>(1), last), y1 = min(y0 + LaneInt<F>(1), last);
+        const F side(static_cast<float>(size)), most(static_cast<float>(size - 2));
+        const F x = p.u * side - F(0.5f), y = p.v * side - F(0.5f), fx = min(max(floor(x), F(0.0f)), most), fy = min(max(floor(y), F(0.0f)), most);
+        const LaneInt<F> x0 = to_int(fx), y0 = to_int(fy), x1 = x0 + LaneInt<F>(1), y1 = y0 + LaneInt<F>(1);
         const F a = depth.fetch<F>(x0, y0, p.layer).x, b = depth.fetch<F>(x1, y0, p.layer).x, c = depth.fetch<F>(x0, y1, p.layer).x, d = depth.fetch<F>(x1, y1, p.layer).x;
-        const F wx = min(max(x - fx, F(0.0f)), F(1.0f)), wy = min(max(y - fy, F(0.0f)), F(1.0f));
+        const F wx = min(max(x - fx, F(-0.5f)), F(1.5f)), wy = min(max(y - fy, F(-0.5f)), F(1.5f));
         const F top = a + wx * (b - a), bottom = c + wx * (d - c), smooth = top + wy * (bottom - top);
         const F nearest = select(wy < F(0.5f), select(wx < F(0.5f), a, b), select(wx < F(0.5f), c, d));
         return select((a > F(0.0f)) & (b > F(0.0f)) & (c > F(0.0f)) & (d > F(0.0f)), smooth, nearest);

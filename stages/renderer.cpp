@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "pipeline/fp_environment.hpp"
 #include "stages/caustic_view.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/mapping/vertex_photons.hpp"
@@ -89,6 +90,7 @@ struct Renderer::Impl {
     EnergyAudit audit;
     Faults faults, frame_faults;
     Observer* observer = nullptr;
+    ProgressListener* listener = nullptr;
     PipelineStatistics statistics;  // of the pass that runs
 
     int width, height;  // of the samples
@@ -614,7 +616,10 @@ void Renderer::Impl::run(const Pass& pass) {
 
 // ---- the renderer
 
-Renderer::Renderer(Device& device, const World& world, const Settings& settings) : impl_(std::make_unique<Impl>(device, world, settings)) {}
+Renderer::Renderer(Device& device, const World& world, const Settings& settings) {
+    const FpEnvironment fp;
+    impl_ = std::make_unique<Impl>(device, world, settings);
+}
 Renderer::~Renderer() = default;
 
 const Faults& Renderer::faults() const { return impl_->faults; }
@@ -624,6 +629,7 @@ const EnergyAudit& Renderer::audit() const { return impl_->audit; }
 const Texture& Renderer::photon_positions(int map) const { return impl_->photon_positions[static_cast<std::size_t>(map)]; }
 const Texture& Renderer::photon_fluxes(int map) const { return impl_->photon_fluxes[static_cast<std::size_t>(map)]; }
 void Renderer::observe(Observer* observer) { impl_->observer = observer; }
+void Renderer::listen(ProgressListener* listener) { impl_->listener = listener; }
 
 Picture Renderer::picture() const {
     if (impl_->settings.samples_side > 1) return {&impl_->small_direct, &impl_->small_caustic, &impl_->small_emission};
@@ -631,12 +637,15 @@ Picture Renderer::picture() const {
 }
 
 Faults Renderer::render() {
+    // Draws guard themselves; views, fits and sums are computed here.
+    const FpEnvironment fp;
     Impl& r = *impl_;
     if (!r.faults.empty()) return r.faults;
     r.frame_faults = Faults();
     r.audit = EnergyAudit();
     for (std::size_t k = 0; k < r.plan.passes.size(); ++k) {
         const Pass& pass = r.plan.passes[k];
+        if (r.listener) r.listener->on_pass(static_cast<int>(k), static_cast<int>(r.plan.passes.size()), pass.name.c_str());
         const double start = now_ms();
         r.statistics = PipelineStatistics();
         if (!r.settings.leave_out || !why_idle(pass, r.world, r.settings)) r.run(pass);

@@ -27,6 +27,15 @@ struct Picture {
     const Texture* emission = nullptr;  // of surfaces, and of the surroundings
 };
 
+// Told of every pass before it runs.
+class ProgressListener {
+public:
+    virtual void on_pass(int number, int count, const char* name) = 0;
+
+protected:
+    ~ProgressListener() = default;
+};
+
 class Renderer {
 public:
     // The world and the device must outlive the renderer. faults() says what did not work out.
@@ -48,6 +57,7 @@ public:
 
     // Called before a draw's pixel-stage invocations, if not null; makes the frame scalar and serial.
     void observe(Observer* observer);
+    void listen(ProgressListener* listener);  // null: nobody
 
 private:
     struct Impl;

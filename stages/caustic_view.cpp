@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 namespace nephroid::stages {
 
 namespace {
 
 constexpr int band_count = 16, bins = 4096;
-constexpr double kept = 0.99;  // of the flux, along each axis
+constexpr double kept_shares[] = {0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5};  // of the flux, along each axis
 
 // Window coordinates reach to infinity: squeezed into -1..1.
 double squeeze(double x, double scale) { return x / (scale + std::abs(x)); }
@@ -103,7 +104,13 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         b.across[bin_of(squeeze(x, scale))] += count;
         b.down[bin_of(squeeze(y, scale))] += count;
     });
-    const auto range = [&](auto member) {
+    // Where the light goes far and wide, a window for nearly all of it would spoil the little spot where most of it lands.
+    // Each share of the flux has its window; the best one gives the photons the most resolution over the wide map, in octaves
+    // on average.
+    struct Window {
+        double left = 0, right = 0, bottom = 0, top = 0;
+    };
+    const auto range = [&](auto member, double kept) {
         std::array<std::uint64_t, bins> all{};
         std::uint64_t total = 0;
         for (const Band& b : bands_)
@@ -114,10 +121,23 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         for (std::uint64_t s = all[high]; high > low && s <= tail; s += all[--high]) {}
         return std::pair{unsqueeze(bin_edge(low), scale), unsqueeze(bin_edge(high + 1), scale)};
     };
-    const auto [left, right] = range(&Band::across);
-    const auto [bottom, top] = range(&Band::down);
+    const double least = parallel ? reach * 1e-5 : 1e-5, wide_extent = parallel ? reach : 2.0;
+    Window best;
+    double best_gain = 0;
+    for (const double kept : kept_shares) {
+        Window w;
+        std::tie(w.left, w.right) = range(&Band::across, kept);
+        std::tie(w.bottom, w.top) = range(&Band::down, kept);
+        // The wide map has half as many texels along an edge.
+        const double finer = 4 * wide_extent * wide_extent / (std::max(w.right - w.left, least) * std::max(w.top - w.bottom, least));
+        const double gain = kept * kept * std::log2(std::max(finer, 1.0));
+        if (gain <= best_gain) continue;
+        best_gain = gain;
+        best = w;
+    }
+    if (best_gain == 0) best = {-0.5 * wide_extent, 0.5 * wide_extent, -0.5 * wide_extent, 0.5 * wide_extent};
+    const auto [left, right, bottom, top] = best;
     constexpr double margin = 1.04;
-    const double least = parallel ? reach * 1e-5 : 1e-5;
     fit.view.centre = {static_cast<float>((left + right) * 0.5), static_cast<float>((bottom + top) * 0.5)};
     fit.view.half = {static_cast<float>(std::max((right - left) * 0.5 * margin, least)), static_cast<float>(std::max((top - bottom) * 0.5 * margin, least))};
 

@@ -55,7 +55,7 @@ private:
             add({.kind = PassKind::Impostor, .name = "surroundings of " + name, .why = "what it shows", .writes = {"impostor"}, .mesh = m});
             if (world_.material_of(mesh).kind == SurfaceKind::Dielectric)
                 add({.kind = PassKind::TraceSeen, .name = "through " + name, .why = "glass is looked through", .reads = {"object layers", "impostor", "eye depth"}, .writes = {"refracted points", "emission"}, .mesh = m});
-            add({.kind = PassKind::TraceSeen, .name = "reflected in " + name, .why = "smooth surfaces reflect", .reads = {"object layers", "impostor", "eye depth"}, .writes = {"reflected points", "emission"}, .mesh = m, .reflect = true});
+            add({.kind = PassKind::TraceSeen, .name = "reflected in " + name, .why = "smooth surfaces reflect", .reads = {"object layers", "impostor", "eye depth"}, .writes = {"reflected points", "emission"}, .mesh = m, .branch = Branch::Reflected});
         }
     }
 
@@ -73,17 +73,22 @@ private:
             if (!receiver_map) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
             receiver_map = true;
             add({.kind = PassKind::CasterLayers, .name = "layers of " + mesh.name + " from " + light.name, .why = "light meets its two sides", .writes = {"object layers", "occluders"}, .light = l, .mesh = m});
-            const bool dielectric = world_.material_of(mesh).kind == SurfaceKind::Dielectric;
-            if (dielectric) plan_map(l, m, false, true, caustic + ", refracted");
-            plan_map(l, m, true, dielectric, caustic + ", reflected");
+            const Material& material = world_.material_of(mesh);
+            const bool dielectric = material.kind == SurfaceKind::Dielectric;
+            const bool has_inside = dielectric && mesh.closed && !material.thin_walled && settings_.variant != mapping::Variant::Tutorial;
+            const bool inside = has_inside && settings_.inner_reflections;
+            if (dielectric) plan_map({l, m, Branch::Refracted, true, inside}, caustic + ", refracted");
+            plan_map({l, m, Branch::Reflected, dielectric, inside}, caustic + ", reflected");
+            if (inside) plan_map({l, m, Branch::ReflectedInside, true, true}, caustic + ", reflected inside");
+            else if (dielectric) leave_out(caustic + ", reflected inside", has_inside ? "inner reflections are switched off" : "the object has no inside");
         }
     }
 
-    void plan_map(int l, int m, bool reflect, bool other_branch, const std::string& name) {
+    void plan_map(const CausticMapPlan& how, const std::string& name) {
         const int map = static_cast<int>(plan_.maps.size());
-        plan_.maps.push_back({l, m, reflect, other_branch});
+        plan_.maps.push_back(how);
         const auto with = [&](PassKind kind, const char* what, const char* why, std::vector<std::string> reads, std::vector<std::string> writes) {
-            add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = l, .mesh = m, .map = map, .reflect = reflect});
+            add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = how.light, .mesh = how.mesh, .map = map, .branch = how.branch});
         };
         with(PassKind::Photons, "photons", "the light is followed to where it lands", {"object layers", "occluders", "receiver map"}, {"photons"});
         with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});

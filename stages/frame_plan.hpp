@@ -37,14 +37,15 @@ struct Pass {
     int light = -1;     // in World::lights
     int mesh = -1;      // in World::meshes: the specular object
     int map = -1;       // caustic map number
-    bool reflect = false;  // the branch
+    Branch branch = Branch::Refracted;
 };
 
 // Light of one lamp by way of one object and one branch.
 struct CausticMapPlan {
     int light, mesh;
-    bool reflect;
-    bool other_branch;  // the other branch has a map, too
+    Branch branch;
+    bool other_branch;  // what is refracted and what is reflected have a map each
+    bool inside_branch;  // so has what is reflected inside
 };
 
 struct FramePlan {

@@ -65,6 +65,12 @@ PipelineState state(const char* name, CullMode cull, DepthState depth) {
     s.rasterizer.front_counter_clockwise = true;
     return s;
 }
+// Which sides of a mesh are drawn.
+enum class Sides {
+    Both,   // receivers stop light from both sides
+    Seen,   // and are seen from behind, and lit by what is bent round them, only if their material says so
+    Outer,  // of closed meshes
+};
 PipelineState screen_state(const char* name) { return state(name, CullMode::None, depth_off); }
 
 double sum_channel(Executor& executor, const Texture& texture, int channel, std::vector<double>& rows) {
@@ -101,8 +107,8 @@ struct Renderer::Impl {
     Texture impostor_depth, impostor_normals, impostor_albedo, impostor_ids;
     CubeViews impostor_faces;
     Texture shadow_depth, shadow_ids, receiver_depth, receiver_ids;
-    LayerPictures caster_layers;
-    SolidLayers caster;
+    LayerPictures caster_layers, lit_layer;
+    SolidLayers caster, lit_side;
     Texture occluders;
     std::vector<Texture> photon_positions, photon_fluxes;  // per map
     Texture accounts, losses;
@@ -136,10 +142,11 @@ struct Renderer::Impl {
     }
     // Draws meshes that `wanted` accepts and the view can see.
     template <class Wanted, class Shader>
-    void draw_meshes(const PipelineState& s, const View& view, const std::array<TargetView, max_render_targets>& targets, const TargetView& depth, Wanted&& wanted, Shader&& shader_of) {
+    void draw_meshes(PipelineState s, Sides sides, const View& view, const std::array<TargetView, max_render_targets>& targets, const TargetView& depth, Wanted&& wanted, Shader&& shader_of) {
         for (int m = 0; m < static_cast<int>(world.meshes.size()); ++m) {
             const Mesh& mesh = world.meshes[m];
             if (!wanted(m) || outside(view, mesh.low, mesh.high)) continue;
+            s.rasterizer.cull = cull_of(sides, m);
             draw(Program{ProjectSurface{view}, shader_of(m)}, s, {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = targets, .depth_target = depth});
         }
     }
@@ -149,8 +156,15 @@ struct Renderer::Impl {
         const float measure = 4.0f * view.half.x * view.half.y / (static_cast<float>(target_width) * static_cast<float>(target_height));
         return {mesh.triangles, texture_of(material), view, m, material.base_color, measure};
     }
-    // Receivers are seen from behind only if their material says so. Light they stop from both sides.
-    CullMode eye_cull(int m) const { return world.material_of(world.meshes[m]).two_sided ? CullMode::None : CullMode::Back; }
+    CullMode cull_of(Sides sides, int m) const {
+        const Mesh& mesh = world.meshes[m];
+        switch (sides) {
+            case Sides::Both: return CullMode::None;
+            case Sides::Seen: return world.material_of(mesh).two_sided ? CullMode::None : CullMode::Back;
+            case Sides::Outer: break;
+        }
+        return mesh.closed ? CullMode::Back : CullMode::None;
+    }
 
     // ---- views
     View eye() const { return eye_view(world, settings); }
@@ -175,12 +189,15 @@ struct Renderer::Impl {
     }
     CubeViews cube_views(const glm::vec3& centre) const { return CubeViews(centre, reach * 1e-4f); }
     View caster_view(const Light& light, const Mesh& mesh) const;
+    View lit_part(const Light& light, View of) const;
+    View around(View v, float left, float right, float bottom, float top) const;
 
     // ---- passes
     void run(const Pass& pass);
-    void draw_depth_map(std::span<const View> views, const Texture& depth, const Texture& ids, bool with_specular);
+    void draw_depth_map(std::span<const View> views, Sides sides, const Texture& depth, const Texture& ids, bool with_specular);
     void shadow_map(const Light& light);
     void receiver_map(const Light& light);
+    bool draw_layer(const View& view, int m, Texture& depth, Texture& normals, int k, CullMode cull, const Texture* before, int before_layer);
     void draw_layers(const View& view, int m, LayerPictures& to);
     void caster_pass(const Pass& pass);
     void photon_pass(const Pass& pass);
@@ -236,6 +253,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
         receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
         caster_layers = LayerPictures(n, n, settings.solid_layers);
+        lit_layer = LayerPictures(n, n, 1);
         occluders = target(Format::D32F, n, n, "occluders");
         accounts = target(Format::RGBA32F, n, n, "accounts");
         losses = target(Format::RGBA32F, n, n, "losses");
@@ -275,6 +293,14 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
 
 // ---- views and sources
 
+View Renderer::Impl::around(View v, float left, float right, float bottom, float top) const {
+    constexpr float margin = 1.01f, least = 1e-7f;
+    v.centre = {(left + right) * 0.5f, (bottom + top) * 0.5f};
+    v.half = {std::max((right - left) * 0.5f * margin, least), std::max((top - bottom) * 0.5f * margin, least)};
+    if (v.perspective) v.near_plane = reach * 1e-4f;
+    return v;
+}
+
 // A view of one object from a light that holds all of it, or as much as one picture can.
 View Renderer::Impl::caster_view(const Light& light, const Mesh& mesh) const {
     const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
@@ -292,17 +318,17 @@ View Renderer::Impl::caster_view(const Light& light, const Mesh& mesh) const {
         }
         left = std::min(left, x), right = std::max(right, x), bottom = std::min(bottom, y), top = std::max(top, y);
     }
-    if (light.kind == LightKind::Spot && light.cos_outer > 0.1f) {
-        // Nothing outside the cone is lit.
-        const float tangent = std::sqrt(std::max(0.0f, 1 - light.cos_outer * light.cos_outer)) / light.cos_outer;
-        left = std::max(left, -tangent), right = std::min(right, tangent), bottom = std::max(bottom, -tangent), top = std::min(top, tangent);
-        if (left >= right || bottom >= top) left = bottom = -tangent, right = top = tangent;
-    }
-    constexpr float margin = 1.01f;
-    v.centre = {(left + right) * 0.5f, (bottom + top) * 0.5f};
-    v.half = {std::max((right - left) * 0.5f * margin, 1e-7f), std::max((top - bottom) * 0.5f * margin, 1e-7f)};
-    if (v.perspective) v.near_plane = reach * 1e-4f;
-    return v;
+    return around(v, left, right, bottom, top);
+}
+
+// The part of a view of an object that a spot light's cone takes.
+View Renderer::Impl::lit_part(const Light& light, View of) const {
+    if (light.kind != LightKind::Spot || light.cos_outer <= 0.1f) return of;
+    const float tangent = std::sqrt(std::max(0.0f, 1 - light.cos_outer * light.cos_outer)) / light.cos_outer;
+    const float left = std::max(of.centre.x - of.half.x, -tangent), right = std::min(of.centre.x + of.half.x, tangent);
+    const float bottom = std::max(of.centre.y - of.half.y, -tangent), top = std::min(of.centre.y + of.half.y, tangent);
+    const bool takes_all = right - left >= 2 * of.half.x && top - bottom >= 2 * of.half.y, takes_none = left >= right || bottom >= top;
+    return takes_all || takes_none ? of : around(of, left, right, bottom, top);
 }
 
 ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
@@ -329,12 +355,12 @@ SpecularMaterial Renderer::Impl::specular_material(int m) const {
 
 // ---- passes
 
-void Renderer::Impl::draw_depth_map(std::span<const View> views, const Texture& depth, const Texture& ids, bool with_specular) {
+void Renderer::Impl::draw_depth_map(std::span<const View> views, Sides sides, const Texture& depth, const Texture& ids, bool with_specular) {
     for (int layer = 0; layer < static_cast<int>(views.size()); ++layer) {
         const View& view = views[layer];
         clear(depth.mip(0, layer));
         clear(ids.mip(0, layer));
-        draw_meshes(state("depth map", CullMode::None, depth_greater), view, {ids.mip(0, layer)}, depth.mip(0, layer), [&](int m) { return with_specular || !specular(m); },
+        draw_meshes(state("depth map", CullMode::None, depth_greater), sides, view, {ids.mip(0, layer)}, depth.mip(0, layer), [&](int m) { return with_specular || !specular(m); },
                     [&](int m) { return StoreId{world.meshes[m].triangles, view, m}; });
     }
 }
@@ -342,51 +368,62 @@ void Renderer::Impl::draw_depth_map(std::span<const View> views, const Texture& 
 void Renderer::Impl::shadow_map(const Light& light) {
     const View single = has_shadow_view(light) ? shadow_view(light) : View();
     const CubeViews faces = cube_views(light.position);
-    draw_depth_map(has_shadow_view(light) ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), shadow_depth, shadow_ids, true);
+    draw_depth_map(has_shadow_view(light) ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), Sides::Both, shadow_depth, shadow_ids, true);
 }
 void Renderer::Impl::receiver_map(const Light& light) {
     const View single = light.kind == LightKind::Directional ? parallel_view(light) : View();
     const CubeViews faces = cube_views(light.position);
-    draw_depth_map(light.kind == LightKind::Directional ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), receiver_depth, receiver_ids, false);
+    draw_depth_map(light.kind == LightKind::Directional ? std::span<const View>(&single, 1) : std::span<const View>(faces.face), Sides::Seen, receiver_depth, receiver_ids, false);
+}
+
+bool Renderer::Impl::draw_layer(const View& view, int m, Texture& depth, Texture& normals, int k, CullMode cull, const Texture* before, int before_layer) {
+    const Mesh& mesh = world.meshes[m];
+    clear(depth.mip(0, k));
+    const std::uint64_t passed = statistics.samples_passed;
+    const StoreNormals shader{mesh.triangles, before ? Texture2DArrayView<Format::D32F>(*before) : Texture2DArrayView<Format::D32F>(), before_layer};
+    draw(Program{ProjectSurface{view}, shader}, state("object layer", cull, depth_greater),
+         {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = {normals.mip(0, k)}, .depth_target = depth.mip(0, k)});
+    return statistics.samples_passed > passed;
 }
 
 void Renderer::Impl::draw_layers(const View& view, int m, LayerPictures& to) {
-    const Mesh& mesh = world.meshes[m];
-    // Draws the nearest faces behind a layer; true if there are any.
-    const auto peel = [&](const Texture& depth, const Texture& normals, int k, CullMode cull, const Texture* before, int before_layer) {
-        clear(depth.mip(0, k));
-        const std::uint64_t passed = statistics.samples_passed;
-        const StoreNormals shader{mesh.triangles, before ? Texture2DArrayView<Format::D32F>(*before) : Texture2DArrayView<Format::D32F>(), before_layer};
-        draw(Program{ProjectSurface{view}, shader}, state("object layer", cull, depth_greater),
-             {.vertices = mesh.vertices, .indices = &mesh.indices, .render_targets = {normals.mip(0, k)}, .depth_target = depth.mip(0, k)});
-        return statistics.samples_passed > passed;
-    };
+    const bool closed = world.meshes[m].closed;
     to.layers = 0;
     for (int k = 0; k < settings.solid_layers; ++k) {
-        const bool any = peel(to.front_depth, to.front_normals, k, mesh.closed ? CullMode::Back : CullMode::None, k > 0 ? &to.back_depth : nullptr, k - 1);
+        const bool any = draw_layer(view, m, to.front_depth, to.front_normals, k, cull_of(Sides::Outer, m), k > 0 ? &to.back_depth : nullptr, k - 1);
         if (!any && k > 0) return;
         to.layers = k + 1;
-        if (!mesh.closed) return;
-        peel(to.back_depth, to.back_normals, k, CullMode::Front, &to.front_depth, k);
+        if (!closed) return;
+        draw_layer(view, m, to.back_depth, to.back_normals, k, CullMode::Front, &to.front_depth, k);
     }
 }
 
+// The object all round, for rays to be followed in, and its lit side, whose texels are photons. A narrow cone's photons
+// soon leave the part of the object that it lights: then these are two views.
 void Renderer::Impl::caster_pass(const Pass& pass) {
-    const View view = caster_view(world.lights[pass.light], world.meshes[pass.mesh]);
-    draw_layers(view, pass.mesh, caster_layers);
-    clear(occluders.mip());
-    for (int m = 0; m < static_cast<int>(world.meshes.size()); ++m) {
-        const Mesh& mesh = world.meshes[m];
-        if (m == pass.mesh || outside(view, mesh.low, mesh.high)) continue;
-        draw(Program{ProjectSurface{view}}, state("occluders", CullMode::None, depth_greater), {.vertices = mesh.vertices, .indices = &mesh.indices, .depth_target = occluders.mip()});
+    const Light& light = world.lights[pass.light];
+    const int m = pass.mesh;
+    const View view = caster_view(light, world.meshes[m]), lit_view = lit_part(light, view);
+    draw_layers(view, m, caster_layers);
+    caster = lit_side = solid(view, m, caster_layers);
+    if (lit_view.centre != view.centre || lit_view.half != view.half) {
+        draw_layer(lit_view, m, lit_layer.front_depth, lit_layer.front_normals, 0, cull_of(Sides::Outer, m), nullptr, -1);
+        lit_layer.layers = 1;
+        lit_side = solid(lit_view, m, lit_layer);
     }
-    caster = solid(view, pass.mesh, caster_layers);
+    clear(occluders.mip());
+    for (int other = 0; other < static_cast<int>(world.meshes.size()); ++other) {
+        const Mesh& mesh = world.meshes[other];
+        if (other == m || outside(lit_view, mesh.low, mesh.high)) continue;
+        draw(Program{ProjectSurface{lit_view}}, state("occluders", CullMode::None, depth_greater), {.vertices = mesh.vertices, .indices = &mesh.indices, .depth_target = occluders.mip()});
+    }
 }
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     mapping::TracePhotons photons;
     photons.tracer.search.solid = caster;
+    photons.lit_side = lit_side;
     photons.tracer.material = specular_material(pass.mesh);
     photons.tracer.bounces = settings.bounces;
     ReceiverSearch& search = photons.tracer.receivers;
@@ -399,8 +436,10 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
     photons.light = LightSource(light);
     photons.occluders = occluders;
     photons.variant = settings.variant;
-    photons.branch = pass.reflect ? mapping::Branch::Reflect : mapping::Branch::Refract;
+    photons.branch = pass.branch;
     photons.other_branch_followed = plan.maps[pass.map].other_branch;
+    if (plan.maps[pass.map].inside_branch) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
+    photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
     const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
     if (settings.variant == mapping::Variant::Vertices) {
         for (int t = 0; t < 4; ++t) clear(targets[t]);
@@ -428,7 +467,7 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
     const auto receivers = [&](const View& view, const TargetView& sides, const TargetView& depth) {
         clear(sides);
         clear(depth);
-        draw_meshes(state("map receivers", CullMode::None, depth_greater), view, {sides}, depth, [&](int m) { return !specular(m); },
+        draw_meshes(state("map receivers", CullMode::None, depth_greater), Sides::Seen, view, {sides}, depth, [&](int m) { return !specular(m); },
                     [&](int m) { return mapping::StoreReceiverSide{world.meshes[m].triangles, view, m}; });
     };
     receivers(map.fit.view, map_sides.mip(), map.depth.mip());
@@ -451,11 +490,11 @@ void Renderer::Impl::splat(const Pass& pass) {
     place.faces = cube_views(light.position);
     place.parallel = parallel_view(light);
     place.focus_size = place.map_size = settings.map_size;
-    place.sprite_size = settings.sprite_size;
+    // Vertices of a mesh have no neighbours in the buffer.
+    place.sprite_size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
     PipelineState s = screen_state("splat photons");
     s.topology = Topology::PointList;
     s.blend = {blend_additive};
-    s.rasterizer.point_size = settings.sprite_size;
     s.rasterizer.depth_clip = false;
     const VertexSource all = vertex_count(std::int64_t{settings.photons} * settings.photons);
     clear(map_flux.mip());
@@ -491,17 +530,14 @@ void Renderer::Impl::surface_points() {
     for (PointPictures& p : points)
         if (!p.positions.empty()) clear(p.positions.mip());
     for (const Texture* t : {&direct, &caustic, &emission}) clear(t->mip());
-    for (const CullMode cull : {CullMode::None, CullMode::Back})
-        draw_meshes(state("surface points", cull, depth_greater), view, {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
-                    [&](int m) { return !specular(m) && eye_cull(m) == cull; }, [&](int m) { return store_receiver(m, view, width, height); });
+    draw_meshes(state("surface points", CullMode::None, depth_greater), Sides::Seen, view, {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
+                [&](int m) { return !specular(m); }, [&](int m) { return store_receiver(m, view, width, height); });
 }
 
 void Renderer::Impl::hide_behind() {
     const View view = eye();
-    for (const bool closed : {true, false})
-        draw_meshes(state("hide behind", closed ? CullMode::Back : CullMode::None, depth_greater), view,
-                    {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
-                    [&](int m) { return specular(m) && world.meshes[m].closed == closed; }, [](int) { return HideReceivers{}; });
+    draw_meshes(state("hide behind", CullMode::None, depth_greater), Sides::Outer, view, {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
+                [&](int m) { return specular(m); }, [](int) { return HideReceivers{}; });
 }
 
 void Renderer::Impl::impostor(const Pass& pass) {
@@ -511,9 +547,8 @@ void Renderer::Impl::impostor(const Pass& pass) {
         const View view = impostor_faces.face[layer];
         clear(impostor_depth.mip(0, layer));
         clear(impostor_normals.mip(0, layer));
-        for (const CullMode cull : {CullMode::None, CullMode::Back})
-            draw_meshes(state("impostor", cull, depth_greater), view, {impostor_normals.mip(0, layer), impostor_albedo.mip(0, layer)}, impostor_depth.mip(0, layer),
-                        [&](int m) { return !specular(m) && eye_cull(m) == cull; }, [&](int m) { return StoreImpostor{store_receiver(m, view, settings.impostor_size, settings.impostor_size)}; });
+        draw_meshes(state("impostor", CullMode::None, depth_greater), Sides::Seen, view, {impostor_normals.mip(0, layer), impostor_albedo.mip(0, layer)}, impostor_depth.mip(0, layer),
+                    [&](int m) { return !specular(m); }, [&](int m) { return StoreImpostor{store_receiver(m, view, settings.impostor_size, settings.impostor_size)}; });
     }
 }
 
@@ -535,8 +570,8 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
     trace.impostor_normals = impostor_normals;
     trace.impostor_albedo = impostor_albedo;
     trace.surroundings.picture = world.environment;
-    trace.way = pass.reflect ? Way::Reflect : Way::Refract;
-    const PointPictures& to = points[pass.reflect ? reflected : refracted];
+    trace.way = pass.branch == Branch::Reflected ? Way::Reflect : Way::Refract;
+    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : refracted];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
     draw(Program{CoverScreen{}, trace}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
@@ -546,7 +581,7 @@ void Renderer::Impl::emission_pass() {
     const View view = eye();
     PipelineState s = state("emission", CullMode::None, {CompareOp::Equal, false});
     s.blend = {blend_additive};
-    draw_meshes(s, view, {emission.mip()}, eye_depth.mip(), [&](int m) { return !specular(m) && world.material_of(world.meshes[m]).emission != glm::vec3(0.0f); },
+    draw_meshes(s, Sides::Both, view, {emission.mip()}, eye_depth.mip(), [&](int m) { return !specular(m) && world.material_of(world.meshes[m]).emission != glm::vec3(0.0f); },
                 [&](int m) { return StoreEmission{world.material_of(world.meshes[m]).emission}; });
 }
 

@@ -15,8 +15,9 @@ struct Settings {
     int photons = 1024;    // per light and object, along an edge; a power of two
     int map_size = 1024;   // caustic map, along an edge
     int receiver_map_size = 1024, shadow_map_size = 1024, impostor_size = 512;
-    float sprite_size = 3.0f;  // texels
-    int bounces = 8;
+    float sprite_size = 0;     // texels; 0: as wide as the photons' spacing asks for
+    int bounces = 16;
+    bool inner_reflections = true;  // follows what surfaces reflect in part inside objects
     int solid_layers = 4;      // pairs of front and back faces looked at per object; 1: as Wyman (2005)
     bool audit = true;         // keep the energy's accounts
     bool leave_out = true;     // passes that change nothing; off only to see that they do not

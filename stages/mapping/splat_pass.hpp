@@ -14,6 +14,7 @@ template <class F>
 struct PhotonSprite {
     vec4<F> position;
     LaneInt<F> layer;
+    F point_size;
     vec3<F> flux;  // W, divided by the mask's sum
     static constexpr auto varyings = std::tuple{flat("flux", &PhotonSprite::flux)};
 };
@@ -34,51 +35,94 @@ struct PlacePhoton {
     View parallel;
     int focus_size;      // texels along an edge of the focus' map
     int map_size;        // of the map that is drawn into
-    float sprite_size;   // texels
+    float sprite_size;   // texels; 0: as the spacing of the photons asks for
 
-    // Whether all of the sprite lies in the focus' view.
+    // Sprites of a width of their own are so much wider than their photons are apart: the sum of neighbours is then flat to
+    // within 2 %, whatever the photons' grid, and no gaps show between them.
+    static constexpr float overlap = 2.1f, narrowest = 3, widest = 32;
+
+    // A place on a map: x and y in texels, down from the top left.
+    template <class F>
+    struct Place {
+        vec4<F> clip;
+        LaneInt<F> layer;
+        F x, y;
+        LaneMask<F> in_front;
+    };
+    template <class F>
+    Place<F> place(const vec3<F>& position, const View& view) const {
+        const vec4<F> clip = view.clip(position);
+        const F inverse_w = F(1.0f) / clip.w, half = F(0.5f * static_cast<float>(map_size));
+        return {clip, LaneInt<F>(0), (clip.x * inverse_w) * half + half, (clip.y * inverse_w) * -half + half, clip.w > F(0.0f)};
+    }
+    template <class F>
+    Place<F> place(const vec3<F>& position) const {
+        if (!wide) return place(position, focus);
+        if (!cube) return place(position, parallel);
+        const CubeViews::Place<F> p = faces.place(position);
+        const vec4<F> clip(p.u * F(2.0f) - F(1.0f), F(1.0f) - p.v * F(2.0f), F(0.5f), F(1.0f));
+        const F side(static_cast<float>(map_size));
+        return {clip, p.layer, p.u * side, p.v * side, LaneMask<F>(true)};
+    }
+
+    // The square of the distance to the nearer of the two neighbours before and after along a row (1, 0) or a column (0, 1) of
+    // the grid; the other may have gone elsewhere. 0 where neither is there.
+    template <class F>
+    F squared_spacing(const Place<F>& at, LaneInt<F> x, LaneInt<F> y, int along_x, int along_y) const {
+        constexpr float none_there = 1e30f;
+        F nearer(none_there);
+        for (const int side : {-1, 1}) {
+            const vec4<F> photon = positions.fetch<F>(x + LaneInt<F>(side * along_x), y + LaneInt<F>(side * along_y));
+            const Place<F> p = place(vec3<F>(photon));
+            const F dx = p.x - at.x, dy = p.y - at.y;
+            nearer = min(nearer, select((photon.w > F(0.0f)) & p.in_front & (p.layer == at.layer), dx * dx + dy * dy, F(none_there)));
+        }
+        return select(nearer < F(none_there), nearer, F(0.0f));
+    }
+    template <class F>
+    F width_of(const Place<F>& at, LaneInt<F> x, LaneInt<F> y) const {
+        if (sprite_size > 0) return F(sprite_size);
+        return min(max(sqrt(max(squared_spacing(at, x, y, 1, 0), squared_spacing(at, x, y, 0, 1))) * F(overlap), F(narrowest)), F(widest));
+    }
+
+    // Whether a photon is the focus' and not the wide map's: a sprite of usual width lies in its view. Of a wider one all
+    // flux goes to the texels that are there.
     template <class F>
     LaneMask<F> in_focus(const vec4<F>& clip) const {
-        const float inside = 1.0f - (sprite_size + 1.0f) / static_cast<float>(focus_size);
+        const float width = sprite_size > 0 ? sprite_size : narrowest, inside = 1.0f - (width + 1.0f) / static_cast<float>(focus_size);
         return (clip.w > F(0.0f)) & (abs(clip.x) <= clip.w * F(inside)) & (abs(clip.y) <= clip.w * F(inside));
     }
     // The mask's sum over the texels that a sprite covers along one axis.
     template <class F>
-    F mask_sum(F centre) const {
-        const F snapped = round_even(centre * F(256.0f)) * F(1.0f / 256.0f), first = ceil(snapped - F(0.5f * sprite_size) - F(0.5f));
+    F mask_sum(F centre, F width) const {
+        const F snapped = round_even(centre * F(256.0f)) * F(1.0f / 256.0f), first = ceil(snapped - F(0.5f) * width - F(0.5f)), to_mask = F(2.0f) / width;
+        const F end = snapped + F(0.5f) * width;
         F sum(0.0f);
-        for (int k = 0; k <= static_cast<int>(sprite_size); ++k) {
-            const F texel = first + F(static_cast<float>(k)), middle = texel + F(0.5f), offset = (middle - snapped) * F(2.0f / sprite_size);
-            const LaneMask<F> covered = (middle < snapped + F(0.5f * sprite_size)) & (texel >= F(0.0f)) & (texel < F(static_cast<float>(map_size)));
+        for (int k = 0;; ++k) {
+            const F texel = first + F(static_cast<float>(k)), middle = texel + F(0.5f), offset = (middle - snapped) * to_mask;
+            if (none(middle < end)) return sum;
+            const LaneMask<F> covered = (middle < end) & (texel >= F(0.0f)) & (texel < F(static_cast<float>(map_size)));
             sum = sum + select(covered, exp(F(-2.0f) * offset * offset), F(0.0f));
         }
-        return sum;
     }
 
     template <class F>
     PhotonSprite<F> operator()(const VertexIds<F>& ids) const {
         const LaneInt<F> k = as_int(ids.vertex_id), x = k & LaneInt<F>((1 << log2_side) - 1), y = k >> log2_side;
         const vec4<F> photon = positions.fetch<F>(x, y);
-        const vec4<F> nowhere(F(2.0f), F(2.0f), F(2.0f), F(1.0f));
-        PhotonSprite<F> out{nowhere, LaneInt<F>(0), vec3<F>(F(0.0f))};
-        const LaneMask<F> landed = photon.w > F(0.0f);
-        if (none(landed)) return out;
+        PhotonSprite<F> out{vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f)), LaneInt<F>(0), F(1.0f), vec3<F>(F(0.0f))};  // nowhere
+        LaneMask<F> drawn = photon.w > F(0.0f);
+        if (none(drawn)) return out;
         const vec3<F> position(photon);
-        vec4<F> clip = focus.clip(position);
-        LaneMask<F> drawn = landed & in_focus(clip);
-        if (wide) {
-            drawn = landed & !drawn;
-            if (cube) {
-                const CubeViews::Place<F> p = faces.place(position);
-                out.layer = p.layer;
-                clip = vec4<F>(p.u * F(2.0f) - F(1.0f), F(1.0f) - p.v * F(2.0f), F(0.5f), F(1.0f));
-            } else {
-                clip = parallel.clip(position);
-            }
-        }
-        const F inverse_w = F(1.0f) / clip.w, half = F(0.5f * static_cast<float>(map_size));
-        const F sum = mask_sum((clip.x * inverse_w) * half + half) * mask_sum((clip.y * inverse_w) * -half + half);
-        out.position = select(drawn, clip, nowhere);
+        const LaneMask<F> focused = in_focus(focus.clip(position));
+        drawn = drawn & (wide ? !focused : focused);
+        if (none(drawn)) return out;
+        const Place<F> at = place(position);
+        const F width = width_of(at, x, y);
+        const F sum = mask_sum(at.x, width) * mask_sum(at.y, width);
+        out.position = select(drawn, at.clip, out.position);
+        out.layer = at.layer;
+        out.point_size = width;
         out.flux = vec3<F>(fluxes.fetch<F>(x, y)) / max(sum, F(1e-20f));
         return out;
     }

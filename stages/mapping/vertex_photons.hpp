@@ -26,7 +26,7 @@ struct TraceVertexPhotons {
 
     template <class F>
     TracedPhoton<F> operator()(const WorldVertex<F>& v, const VertexIds<F>& ids) const {
-        const SolidLayers& solid = photons.tracer.search.solid;
+        const SolidLayers& solid = photons.lit_side;
         const View::Place<F> p = solid.view.place(v.position);
         // Lit if it is what the light's view shows there, to within a texel's slope.
         const LaneInt<F> x = to_int(p.u * F(static_cast<float>(solid.width))), y = to_int(p.v * F(static_cast<float>(solid.height)));
@@ -39,7 +39,7 @@ struct TraceVertexPhotons {
         const LaneMask<F> lit = (p.z > F(0.0f)) & (front > F(0.0f)) & (p.nearness >= front - tolerance) & (p.nearness > photons.occluders.fetch<F>(x, y).x) & (across > F(0.0f));
         // The vertex's share of the light: irradiance across times area, or intensity times solid angle.
         const F measure = directional ? across : across / glm::dot(to_vertex, to_vertex);
-        const std::array<vec4<F>, 4> r = photons.trace(v.position, direction, photons.light.emission(v.position) * measure, v.normal, glm::normalize(area), lit);
+        const std::array<vec4<F>, 4> r = photons.trace(v.position, direction, photons.light.emission(v.position) * measure, v.normal, glm::normalize(area), ids.vertex_id, lit);
 
         const LaneInt<F> k = as_int(ids.vertex_id), column = k & LaneInt<F>((1 << log2_side) - 1), row = k >> log2_side;
         const F scale(2.0f / static_cast<float>(1 << log2_side));

@@ -47,7 +47,7 @@ struct TraceSeen {
     Texture2DArrayView<Format::RGBA32F> impostor_normals;
     Texture2DArrayView<Format::RGBA8Srgb> impostor_albedo;
     Surroundings surroundings;
-    Way way = Way::Strongest;
+    Way way = Way::Refract;
     bool radiance_scaling = true;
 
     // Targets: position and id, normal, albedo times what the way leaves; radiance from the surroundings.

@@ -4,9 +4,12 @@
 //
 // The sides of the view volume themselves are not clipped against: what lies outside them covers no pixel of the viewport.
 // Polygons are cut plane by plane (Sutherland and Hodgman 1974). A cut edge's new vertex is computed from its inner end to
-// its outer end, so that two triangles that share the edge get the same one.
+// its outer end, so that two triangles that share the edge get the same one. All in double: a new vertex close to the eye is
+// the difference of numbers as large as the whole edge, divided by the little that is left of its w. In float, the depth of
+// a floor that reaches from behind the eye to the horizon was off by 4e-4.
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "pipeline/draw_context.hpp"
 #include "pipeline/lanes/scalar.hpp"
@@ -20,11 +23,12 @@ struct Plane {
 };
 constexpr int plane_count = 7;
 
-float distance(const Plane& p, const float v[4]) { return (p.x * v[0] + p.y * v[1]) + (p.z * v[2] + p.w * v[3]); }
+double distance(const Plane& p, const double v[4]) { return (p.x * v[0] + p.y * v[1]) + (p.z * v[2] + p.w * v[3]); }
 
 struct ClipVertex {
-    float position[4];
+    double position[4];
     std::uint32_t vertex;  // in batch.vertices
+    bool given;            // by the primitive, not made here
     bool in_guard_band;    // as set-up sees it; false for new vertices
 };
 
@@ -49,52 +53,59 @@ struct PlaneSet {
     }
     // How far inside a vertex is. One of the primitive's own that set-up finds within the guard band is inside of it, however
     // near to its border: a neighbour that shares the vertex and needs no clipping keeps it, too.
-    float inside(int k, const ClipVertex& v) const {
-        if (k == 0) return v.position[3] - smallest_w;
-        const float d = distance(plane[k], v.position);
-        return k >= first_guard && v.in_guard_band ? max(d, 0.0f) : d;
+    double inside(int k, const ClipVertex& v) const {
+        if (k == 0) return v.position[3] - double{smallest_w};
+        const double d = distance(plane[k], v.position);
+        return k >= first_guard && v.in_guard_band && d < 0 ? 0 : d;
     }
 };
 
-bool finite(const float v[4]) {
+bool finite(const double v[4]) {
     for (int c = 0; c < 4; ++c)
-        if (!(abs(v[c]) <= 0x1.fffffep127f)) return false;
+        if (!(v[c] >= -0x1.fffffep127 && v[c] <= 0x1.fffffep127)) return false;
     return true;
 }
 
 // Bits of the view volume's planes that a vertex is outside of.
-int outcode(const float v[4], bool depth_clip) {
-    const float x = v[0], y = v[1], z = v[2], w = v[3];
+int outcode(const double v[4], bool depth_clip) {
+    const double x = v[0], y = v[1], z = v[2], w = v[3];
     return (x < -w) | (x > w) << 1 | (y < -w) << 2 | (y > w) << 3 | (depth_clip && z < 0) << 4 | (depth_clip && z > w) << 5 | (w <= 0) << 6;
 }
 
-
-ScreenVertex project(const DrawContext& draw, const RasterTarget& target, const float p[4]) {
-    const float r = 1.0f / p[3];
-    return {(p[0] * r) * target.scale_x + target.offset_x, (p[1] * r) * target.scale_y + target.offset_y, (p[2] * r) * draw.depth_scale + draw.depth_offset, r};
+// A given vertex lands where set-up puts it for the primitives that need no clipping.
+ScreenVertex project(const DrawContext& draw, const RasterTarget& target, const ClipVertex& v) {
+    if (v.given) {
+        const float r = 1.0f / static_cast<float>(v.position[3]);
+        const auto over_w = [&](int c) { return static_cast<float>(v.position[c]) * r; };
+        return {over_w(0) * target.scale_x + target.offset_x, over_w(1) * target.scale_y + target.offset_y, over_w(2) * draw.depth_scale + draw.depth_offset, r};
+    }
+    const double r = 1.0 / v.position[3];
+    const auto placed = [&](int c, float scale, float offset) { return static_cast<float>(v.position[c] * r * double{scale} + double{offset}); };
+    return {placed(0, target.scale_x, target.offset_x), placed(1, target.scale_y, target.offset_y), placed(2, draw.depth_scale, draw.depth_offset), static_cast<float>(r)};
 }
 
 void load(const DrawContext& draw, const RasterTarget& target, const Batch& batch, std::uint32_t vertex, ClipVertex& out) {
-    for (int c = 0; c < 4; ++c) out.position[c] = batch.vertices.position[c][vertex];
+    for (int c = 0; c < 4; ++c) out.position[c] = double{batch.vertices.position[c][vertex]};
     out.vertex = vertex;
-    const ScreenVertex s = project(draw, target, out.position);
-    out.in_guard_band = out.position[3] >= smallest_w && s.x >= guard_low && s.x <= guard_high && s.y >= guard_low && s.y <= guard_high;
+    out.given = true;
+    const ScreenVertex s = project(draw, target, out);
+    out.in_guard_band = out.position[3] >= double{smallest_w} && s.x >= guard_low && s.x <= guard_high && s.y >= guard_low && s.y <= guard_high;
 }
 
 // The new vertex, appended to the batch's, where the edge from an inner vertex a to an outer one b crosses plane k.
-ClipVertex cut(const DrawContext& draw, Batch& batch, int k, const ClipVertex& a, const ClipVertex& b, float inside_a, float inside_b) {
+ClipVertex cut(const DrawContext& draw, Batch& batch, int k, const ClipVertex& a, const ClipVertex& b, double inside_a, double inside_b) {
     // From the nearer end, so that little is lost where one end's numbers are small against the other's: t of the way from
     // `from` to `to`.
-    const float whole = inside_a - inside_b;
+    const double whole = inside_a - inside_b;
     const bool from_a = inside_a <= -inside_b;
     const ClipVertex &from = from_a ? a : b, &to = from_a ? b : a;
-    const float t = (from_a ? inside_a : -inside_b) / whole;
+    const double t = (from_a ? inside_a : -inside_b) / whole;
     ClipVertex v;
-    v.in_guard_band = false;
+    v.given = v.in_guard_band = false;
     for (int c = 0; c < 4; ++c) v.position[c] = from.position[c] + t * (to.position[c] - from.position[c]);
-    if (k == 0) v.position[3] = smallest_w;
+    if (k == 0) v.position[3] = double{smallest_w};
     v.vertex = static_cast<std::uint32_t>(batch.raster_vertex_count++);
-    for (int c = 0; c < 4; ++c) batch.vertices.position[c][v.vertex] = v.position[c];
+    for (int c = 0; c < 4; ++c) batch.vertices.position[c][v.vertex] = static_cast<float>(v.position[c]);
     if (!batch.vertices.records) return v;
 
     const RecordLayout& layout = *draw.raster_layout;
@@ -102,15 +113,15 @@ ClipVertex cut(const DrawContext& draw, Batch& batch, int k, const ClipVertex& a
     std::byte* out = batch.vertices.records + v.vertex * bytes;
     const std::byte *first = batch.vertices.records + from.vertex * bytes, *second = batch.vertices.records + to.vertex * bytes;
     // Linear on the screen; an edge that comes from behind the eye has no such thing, and only its part in front is drawn.
-    const float screen_t = k == 0 ? t : min((t * to.position[3]) / v.position[3], 1.0f);
+    const double screen_t = k == 0 ? t : std::min((t * to.position[3]) / v.position[3], 1.0);
     for (std::size_t c = 0; c < bytes / 4; ++c) {
         std::uint32_t word;
         std::memcpy(&word, first + 4 * c, 4);
         if (layout.mode[c] == ComponentMode::Smooth || layout.mode[c] == ComponentMode::Linear) {
             std::uint32_t other;
             std::memcpy(&other, second + 4 * c, 4);
-            const float x = bits_float(word), y = bits_float(other);
-            word = float_bits(x + (layout.mode[c] == ComponentMode::Smooth ? t : screen_t) * (y - x));
+            const double x = double{bits_float(word)}, y = double{bits_float(other)};
+            word = float_bits(static_cast<float>(x + (layout.mode[c] == ComponentMode::Smooth ? t : screen_t) * (y - x)));
         }
         std::memcpy(out + 4 * c, &word, 4);
     }
@@ -119,8 +130,8 @@ ClipVertex cut(const DrawContext& draw, Batch& batch, int k, const ClipVertex& a
 
 // Where a vertex that is left lands. Rounding may carry numbers of very different size out of the guard band again; edges
 // are only exact within it. False where they have become no numbers.
-bool land(const DrawContext& draw, const RasterTarget& target, const float p[4], ScreenVertex& out) {
-    out = project(draw, target, p);
+bool land(const DrawContext& draw, const RasterTarget& target, const ClipVertex& v, ScreenVertex& out) {
+    out = project(draw, target, v);
     out.x = min(max(out.x, guard_low), guard_high);
     out.y = min(max(out.y, guard_low), guard_high);
     return out.x == out.x && out.y == out.y && abs(out.z) <= 0x1.fffffep127f;
@@ -147,7 +158,9 @@ public:
                 if (is_ear(i % count_, sign)) ear = i % count_;
             if (ear < 0) break;
             if (turn(before(ear), ear, after(ear)) != 0) emit(corner_[before(ear)], corner_[ear], corner_[after(ear)]), whole = false;
-            for (int i = ear; i + 1 < count_; ++i) x_[i] = x_[i + 1], y_[i] = y_[i + 1], corner_[i] = corner_[i + 1];
+            std::copy(x_ + ear + 1, x_ + count_, x_ + ear);
+            std::copy(y_ + ear + 1, y_ + count_, y_ + ear);
+            std::copy(corner_ + ear + 1, corner_ + count_, corner_ + ear);
             --count_;
         }
         // An outline of less than a subpixel's width may even cross itself: what turns the other way would be drawn twice.
@@ -209,7 +222,7 @@ void clip_and_set_up_triangle(const DrawContext& draw, Batch& batch, int primiti
         int kept = 0;
         for (int i = 0; i < count; ++i) {
             const ClipVertex &a = polygon[i], &b = polygon[i + 1 == count ? 0 : i + 1];
-            const float da = planes.inside(k, a), db = planes.inside(k, b);
+            const double da = planes.inside(k, a), db = planes.inside(k, b);
             // A convex polygon crosses a plane twice; only rounding can make it more, of what is thin beyond measure.
             if (kept + 2 > max_vertices_per_clipped || cuts == new_vertices_per_clipped) {
                 ++batch.statistics.culled_primitives;
@@ -227,7 +240,7 @@ void clip_and_set_up_triangle(const DrawContext& draw, Batch& batch, int primiti
     ScreenVertex screen[max_vertices_per_clipped];
     Ears ears;
     for (int i = 0; i < count; ++i) {
-        if (!land(draw, target, polygon[i].position, screen[i])) {
+        if (!land(draw, target, polygon[i], screen[i])) {
             ++batch.statistics.culled_primitives;
             return;
         }
@@ -236,6 +249,9 @@ void clip_and_set_up_triangle(const DrawContext& draw, Batch& batch, int primiti
     int triangles = 0;
     ears.cut_off([&](int a, int b, int c) {
         if (++triangles > max_records_per_clipped) return;
+        // Planes are measured from the first corner: from the farthest one, so that what is left of a triangle that reached
+        // to the eye is not the difference of the large numbers there.
+        while (screen[a].inverse_w > screen[b].inverse_w || screen[a].inverse_w > screen[c].inverse_w) std::tie(a, b, c) = std::tuple(b, c, a);
         const ScreenVertex corners[3] = {screen[a], screen[b], screen[c]};
         const std::uint32_t vertices[3] = {batch.first_vertex + polygon[a].vertex, batch.first_vertex + polygon[b].vertex, batch.first_vertex + polygon[c].vertex};
         set_up_triangle(draw, batch, corners, vertices, batch.first_vertex + leading, batch.primitives.primitive_id[primitive], target_index);
@@ -265,7 +281,7 @@ void clip_and_set_up_line(const DrawContext& draw, Batch& batch, int primitive) 
     if (outside_all) return;
     const PlaneSet planes(draw, target);
     for (int k = 0; k < planes.count; ++k) {
-        const float d0 = planes.inside(k, end[0]), d1 = planes.inside(k, end[1]);
+        const double d0 = planes.inside(k, end[0]), d1 = planes.inside(k, end[1]);
         if (d0 < 0 && d1 < 0) return;
         if (d0 < 0) end[0] = cut(draw, batch, k, end[1], end[0], d1, d0);
         else if (d1 < 0) end[1] = cut(draw, batch, k, end[0], end[1], d0, d1);
@@ -273,7 +289,7 @@ void clip_and_set_up_line(const DrawContext& draw, Batch& batch, int primitive) 
     LineRecord r{};
     for (int c = 0; c < 2; ++c) {
         ScreenVertex s;
-        valid = land(draw, target, end[c].position, s) && valid;
+        valid = land(draw, target, end[c], s) && valid;
         if (!valid) break;
         r.x[c] = to_int_in_range(round_even(s.x * subpixels));
         r.y[c] = to_int_in_range(round_even(s.y * subpixels));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "pipeline/math.hpp"
+
 namespace nephroid::stages {
 
 namespace {
@@ -130,7 +132,7 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         std::tie(w.bottom, w.top) = range(&Band::down, kept);
         // The wide map has half as many texels along an edge.
         const double finer = 4 * wide_extent * wide_extent / (std::max(w.right - w.left, least) * std::max(w.top - w.bottom, least));
-        const double gain = kept * kept * std::log2(std::max(finer, 1.0));
+        const double gain = kept * kept * nephroid::log2(static_cast<float>(std::max(finer, 1.0)));
         if (gain <= best_gain) continue;
         best_gain = gain;
         best = w;

@@ -52,7 +52,7 @@ TEST_CASE("refraction follows Snell's law in the plane of incidence") {
         if (std::abs(sine - 1) < 1e-4) continue;  // too close to the critical angle to say which
         REQUIRE(r.total == (sine > 1));
         if (r.total) continue;
-        CHECK(glm::length(r.direction) == doctest::Approx(1.0).epsilon(1e-6));
+        CHECK(glm::length(r.direction) == doctest::Approx(1.0).epsilon(1e-6).scale(0));
         const glm::vec3 across = r.direction + n * glm::dot(-r.direction, n);
         // Near the critical angle the cosine loses half its digits.
         const double tolerance = 2e-6 / std::max(std::sqrt(1 - sine * sine), 1e-3);
@@ -77,15 +77,15 @@ TEST_CASE("Fresnel's reflectance agrees with its closed form, and is symmetric")
         if (std::abs(sine - 1) < 1e-3) continue;
         CHECK(std::abs(reflectance - truth) < 5e-5);
     }
-    CHECK(fresnel(1.0f, 1.0f, 1.0f / 1.5f) == doctest::Approx(0.04).epsilon(1e-6));
-    CHECK(thin_plate_transmittance(0.04f) == doctest::Approx(0.96 / 1.04).epsilon(1e-6));
+    CHECK(fresnel(1.0f, 1.0f, 1.0f / 1.5f) == doctest::Approx(0.04).epsilon(1e-6).scale(0));
+    CHECK(thin_plate_transmittance(0.04f) == doctest::Approx(0.96 / 1.04).epsilon(1e-6).scale(0));
 }
 
 TEST_CASE("reflection keeps the angle and the plane") {
     std::mt19937 random(3);
     for (int i = 0; i < 1000; ++i) {
         const glm::vec3 n = random_unit(random), d = random_unit(random), r = reflect(d, n);
-        CHECK(glm::dot(r, n) == doctest::Approx(-glm::dot(d, n)).epsilon(1e-5));
+        CHECK(std::abs(glm::dot(r, n) + glm::dot(d, n)) < 1e-6f);
         CHECK(glm::length(r - d + n * (2 * glm::dot(d, n))) < 1e-6f);
     }
 }
@@ -97,8 +97,8 @@ TEST_CASE("a point light's irradiance falls with the square of the distance and 
     const LightSource source(light);
     const glm::vec3 p(0.5f, 0, 0.25f), n(0, 1, 0), d = light.position - p;
     const double squared = glm::dot(glm::dvec3(d), glm::dvec3(d)), cosine = d.y / std::sqrt(squared);
-    CHECK(source.irradiance(p, n).x == doctest::Approx(5 * cosine / squared).epsilon(1e-6));
-    CHECK(source.irradiance(p, n).z == doctest::Approx(1 * cosine / squared).epsilon(1e-6));
+    CHECK(source.irradiance(p, n).x == doctest::Approx(5 * cosine / squared).epsilon(1e-6).scale(0));
+    CHECK(source.irradiance(p, n).z == doctest::Approx(1 * cosine / squared).epsilon(1e-6).scale(0));
     CHECK(source.irradiance(p, -n) == glm::vec3(0));
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("a spot fades between its cones as KHR_lights_punctual says, and is a 
     CHECK(at(0.1) == 1.0f);
     CHECK(at(0.55) == 0.0f);
     const double t = (std::cos(0.35) - std::cos(0.5)) / (std::cos(0.2) - std::cos(0.5));
-    CHECK(at(0.35) == doctest::Approx(t * t).epsilon(1e-4));
+    CHECK(at(0.35) == doctest::Approx(t * t).epsilon(1e-4).scale(0));
     light.cos_inner = light.cos_outer;
     CHECK(at(0.49) == 1.0f);
     CHECK(at(0.51) == 0.0f);
@@ -146,9 +146,9 @@ TEST_CASE("packed unit vectors come back") {
 }
 
 TEST_CASE("the adjoint factor is 1 where the normals agree") {
-    CHECK(adjoint_factor(0.3f, 0.7f, 0.3f, 0.7f) == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(adjoint_factor(0.3f, 0.7f, 0.3f, 0.7f) == doctest::Approx(1.0).epsilon(1e-6).scale(0));
     // arrive_n depart_g / (arrive_g depart_n)
-    CHECK(adjoint_factor(0.4f, 0.8f, 0.5f, 0.6f) == doctest::Approx(0.4 * 0.6 / (0.5 * 0.8)).epsilon(1e-6));
+    CHECK(adjoint_factor(0.4f, 0.8f, 0.5f, 0.6f) == doctest::Approx(0.4 * 0.6 / (0.5 * 0.8)).epsilon(1e-6).scale(0));
 }
 
 }  // namespace nephroid::test

@@ -34,11 +34,11 @@ TEST_CASE("no specular object, no caustic pass; no light, no light's pass") {
     CHECK_FALSE(plan.left_out.empty());
 }
 
-TEST_CASE("glass has two maps per light, a mirror one; every pass has a name of its own and a reason") {
+TEST_CASE("glass has three maps per light, a mirror one; every pass has a name of its own and a reason") {
     Device device;
-    CHECK(plan_of(device, scenes::bundled_scene("glass-sphere")).maps.size() == 2);
+    CHECK(plan_of(device, scenes::bundled_scene("glass-sphere")).maps.size() == 3);
     CHECK(plan_of(device, scenes::bundled_scene("mirror-ring")).maps.size() == 1);
-    CHECK(plan_of(device, scenes::bundled_scene("sphere-above-water")).maps.size() == 4);
+    CHECK(plan_of(device, scenes::bundled_scene("sphere-above-water")).maps.size() == 6);
     for (const std::string_view name : scenes::bundled_scene_names()) {
         const stages::FramePlan plan = plan_of(device, scenes::bundled_scene(name));
         std::vector<std::string> names;

@@ -28,9 +28,9 @@ TEST_CASE("a position comes back from its place, in perspective and in parallel 
             CHECK(glm::length(v.position(place.u, place.v, place.nearness) - p) < 2e-5f);
             // The rasterizer's clip space says the same.
             const glm::vec4 c = v.clip<float>(p);
-            CHECK(c.x / c.w * 0.5f + 0.5f == doctest::Approx(place.u).epsilon(1e-4));
-            CHECK(0.5f - c.y / c.w * 0.5f == doctest::Approx(place.v).epsilon(1e-4));
-            CHECK(c.z / c.w == doctest::Approx(place.nearness).epsilon(1e-4));
+            CHECK(c.x / c.w * 0.5f + 0.5f == doctest::Approx(place.u).epsilon(1e-4).scale(0));
+            CHECK(0.5f - c.y / c.w * 0.5f == doctest::Approx(place.v).epsilon(1e-4).scale(0));
+            CHECK(c.z / c.w == doctest::Approx(place.nearness).epsilon(1e-4).scale(0));
         }
     }
 }
@@ -44,10 +44,10 @@ TEST_CASE("nearness is linear over the picture on a plane") {
         v.far_plane = 9.0f;
         const glm::vec3 point(0.3f, 0.1f, 0.2f), n = glm::normalize(glm::vec3(0.1f, 1, 0.2f));
         const auto at = [&](float u, float w) { return v.plane_nearness(point, n, u, w); };
-        CHECK(at(0.5f, 0.5f) == doctest::Approx((at(0.2f, 0.5f) + at(0.8f, 0.5f)) * 0.5f).epsilon(1e-5));
-        CHECK(at(0.4f, 0.4f) == doctest::Approx((at(0.4f, 0.1f) + at(0.4f, 0.7f)) * 0.5f).epsilon(1e-5));
+        CHECK(at(0.5f, 0.5f) == doctest::Approx((at(0.2f, 0.5f) + at(0.8f, 0.5f)) * 0.5f).epsilon(1e-5).scale(0));
+        CHECK(at(0.4f, 0.4f) == doctest::Approx((at(0.4f, 0.1f) + at(0.4f, 0.7f)) * 0.5f).epsilon(1e-5).scale(0));
         const View::Place<float> place = v.place(point);
-        CHECK(at(place.u, place.v) == doctest::Approx(place.nearness).epsilon(1e-5));
+        CHECK(at(place.u, place.v) == doctest::Approx(place.nearness).epsilon(1e-5).scale(0));
     }
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("texel measures add up to the window's solid angle or area") {
     constexpr int side = 256;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) sum += v.texel_measure((static_cast<float>(x) + 0.5f) / side, (static_cast<float>(y) + 0.5f) / side, side, side);
-    CHECK(sum == doctest::Approx(4 * std::acos(-1.0) / 6).epsilon(1e-4));  // a face of a cube
+    CHECK(sum == doctest::Approx(4 * std::acos(-1.0) / 6).epsilon(1e-4).scale(0));  // a face of a cube
     v.perspective = false;
     CHECK(v.texel_measure(0.2f, 0.9f, 10, 20) == doctest::Approx(4.0 / 200));
 }
@@ -75,9 +75,9 @@ TEST_CASE("cube faces hold every direction once, and agree with their views") {
         REQUIRE(place.layer < 6);
         ++count[place.layer];
         const View::Place<float> in_view = cube.face[place.layer].place(p);
-        CHECK(place.u == doctest::Approx(in_view.u).epsilon(1e-5));
-        CHECK(place.v == doctest::Approx(in_view.v).epsilon(1e-5));
-        CHECK(place.nearness == doctest::Approx(in_view.nearness).epsilon(1e-5));
+        CHECK(place.u == doctest::Approx(in_view.u).epsilon(1e-5).scale(0));
+        CHECK(place.v == doctest::Approx(in_view.v).epsilon(1e-5).scale(0));
+        CHECK(place.nearness == doctest::Approx(in_view.nearness).epsilon(1e-5).scale(0));
         CHECK(place.u >= -1e-6f);
         CHECK(place.u <= 1 + 1e-6f);
         const glm::vec3 ray = CubeViews::ray<float>(place.layer, place.u, place.v), in_face = cube.face[place.layer].ray(place.u, place.v);

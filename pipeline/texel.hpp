@@ -26,8 +26,8 @@ inline Color4 canonical(Color4 v) {
 }
 inline float canonical(float v) { return v != v ? canonical_nan : v; }
 
-// The product is exact in double, so only the result is rounded: in float, 0.3 * 255 would be taken for the tie 76.5.
-inline std::uint8_t unorm8(float v) { return static_cast<std::uint8_t>((static_cast<double>(min(max(0.0f, v), 1.0f)) * 255.0 + 0x1p52) - 0x1p52); }
+// Direct3D's rule: scaled, then rounded; the scaled value is a float, as it is in every renderer that is compared with.
+inline std::uint8_t unorm8(float v) { return static_cast<std::uint8_t>(to_int_in_range(round_even(min(max(0.0f, v), 1.0f) * 255.0f))); }
 
 template <Format format>
 inline Color4 load_texel(const std::byte* at) {

@@ -41,7 +41,7 @@ float from_srgb(std::uint8_t b) {
 std::uint8_t unorm_from(float v) {
     if (!(v > 0)) return 0;
     if (v >= 1) return 255;
-    return static_cast<std::uint8_t>(std::nearbyint(double{v} * 255));  // 24 and 8 bits: the product is exact
+    return static_cast<std::uint8_t>(std::nearbyint(v * 255.0f));
 }
 
 Texel encode(Format format, const glm::vec4& color) {

@@ -241,7 +241,7 @@ struct ImageSpaceTracer {
         g = select(glm::dot(ray.direction, g) > F(grazing), n, g);
         n = select(glm::dot(ray.direction, n) > F(grazing), g, n);
         if (material.kind == SurfaceKind::Mirror) {
-            n = select(misleads(ray.direction, reflect(ray.direction, n), LaneMask<F>(true), n, g), g, n);
+            n = select(misleads(ray.direction, reflect(ray.direction, n), LaneMask<F>(true), n, g, event > 0), g, n);
             const vec3<F> corrected = event < corrected_events ? g : n;
             turn(ray, meets, reflect(ray.direction, n), n, corrected);
         } else if (material.thin_walled) {
@@ -256,7 +256,7 @@ struct ImageSpaceTracer {
         } else {
             const F chance = way == Way::Onwards && partial != Partial::NotFollowed && any(meets & ray.by_chance) ? uniform_from_bits<F>(random_bits<LaneUint<F>>(seed, ray.index, static_cast<std::uint32_t>(event))[0]) : F(1.0f);
             const Choice<F> first = choose(ray, n, way, chance);
-            const LaneMask<F> misled = meets & misleads(ray.direction, first.out, first.reflects, n, g);
+            const LaneMask<F> misled = meets & misleads(ray.direction, first.out, first.reflects, n, g, event > 0);
             n = select(misled, g, n);
             const Choice<F> choice = any(misled) ? choose(ray, n, way, chance) : first;
             share_out(ray, meets, choice, way);
@@ -331,13 +331,16 @@ private:
     }
 
     // An interpolated normal may send light to the wrong side of the triangle. Where rays graze, it may also be so far from
-    // the triangle's that the correction for it would multiply the light, without a bound, and again at every bounce. The
-    // triangle's own normal counts then, for which there is nothing to correct.
+    // the triangle's that the correction for it would multiply the light, without a bound, and, `again`, at every surface.
+    // The triangle's own normal counts then, for which there is nothing to correct.
     template <class F>
-    static LaneMask<F> misleads(const vec3<F>& in, const vec3<F>& out, LaneMask<F> reflects, const vec3<F>& n, const vec3<F>& g) {
+    static LaneMask<F> misleads(const vec3<F>& in, const vec3<F>& out, LaneMask<F> reflects, const vec3<F>& n, const vec3<F>& g, bool again) {
         constexpr float most = 2.0f;
-        const F side = glm::dot(out, g), factor = adjoint_factor(abs(glm::dot(in, n)), abs(glm::dot(out, n)), abs(glm::dot(in, g)), abs(side));
-        return select(reflects, side <= F(0.0f), side >= F(0.0f)) | (factor > F(most)) | (factor < F(1.0f / most));
+        const F side = glm::dot(out, g);
+        const LaneMask<F> wrong_side = select(reflects, side <= F(0.0f), side >= F(0.0f));
+        if (!again) return wrong_side;
+        const F factor = adjoint_factor(abs(glm::dot(in, n)), abs(glm::dot(out, n)), abs(glm::dot(in, g)), abs(side));
+        return wrong_side | (factor > F(most)) | (factor < F(1.0f / most));
     }
 
     // Fresnel's shares to the accounts.

@@ -146,29 +146,56 @@ public:
         x_[count_] = x, y_[count_] = y, corner_[count_++] = corner;
     }
     template <class Emit>
-    void cut_off(const Emit& emit) {
+    void cut_off(const Emit& emit_corners) {
         while (count_ > 1 && x_[0] == x_[count_ - 1] && y_[0] == y_[count_ - 1]) --count_;
         std::int64_t area = 0;
         for (int i = 1; i + 1 < count_; ++i) area += turn(0, i, i + 1);
         const std::int64_t sign = area < 0 ? -1 : 1;
+        bool bent = false;
+        for (int i = 0; i < count_; ++i) bent = bent || turn(before(i), i, after(i)) * sign < 0;
+        // A bent outline of less than a subpixel's width may cross itself. What would be drawn twice is then drawn once.
+        Triangle drawn[max_vertices_per_clipped];
+        int drawn_count = 0;
+        const auto emit = [&](int a, int b, int c) {
+            if (bent) {
+                const Triangle t = {{x_[a], x_[b], x_[c]}, {y_[a], y_[b], y_[c]}};
+                for (int k = 0; k < drawn_count; ++k)
+                    if (!apart(t, drawn[k], sign) && !apart(drawn[k], t, sign)) return;
+                drawn[drawn_count++] = t;
+            }
+            emit_corners(corner_[a], corner_[b], corner_[c]);
+        };
         bool whole = count_ == 3;
         while (count_ > 3) {
             int ear = -1;
             for (int i = 1; i <= count_ && ear < 0; ++i)
                 if (is_ear(i % count_, sign)) ear = i % count_;
             if (ear < 0) break;
-            if (turn(before(ear), ear, after(ear)) != 0) emit(corner_[before(ear)], corner_[ear], corner_[after(ear)]), whole = false;
+            if (turn(before(ear), ear, after(ear)) != 0) emit(before(ear), ear, after(ear)), whole = false;
             std::copy(x_ + ear + 1, x_ + count_, x_ + ear);
             std::copy(y_ + ear + 1, y_ + count_, y_ + ear);
             std::copy(corner_ + ear + 1, corner_ + count_, corner_ + ear);
             --count_;
         }
-        // An outline of less than a subpixel's width may even cross itself: what turns the other way would be drawn twice.
         for (int i = 1; i + 1 < count_; ++i)
-            if (whole || turn(0, i, i + 1) * sign > 0) emit(corner_[0], corner_[i], corner_[i + 1]);
+            if (whole || turn(0, i, i + 1) * sign > 0) emit(0, i, i + 1);
     }
 
 private:
+    struct Triangle {
+        std::int64_t x[3], y[3];
+    };
+    // Whether an edge of a has all of b on its outer side.
+    static bool apart(const Triangle& a, const Triangle& b, std::int64_t sign) {
+        for (int i = 0; i < 3; ++i) {
+            const int j = i == 2 ? 0 : i + 1;
+            bool outside = true;
+            for (int k = 0; k < 3; ++k)
+                outside = outside && ((a.x[j] - a.x[i]) * (b.y[k] - a.y[i]) - (b.x[k] - a.x[i]) * (a.y[j] - a.y[i])) * sign <= 0;
+            if (outside) return true;
+        }
+        return false;
+    }
     int before(int i) const { return i == 0 ? count_ - 1 : i - 1; }
     int after(int i) const { return i + 1 == count_ ? 0 : i + 1; }
     std::int64_t turn(int a, int b, int c) const { return (x_[b] - x_[a]) * (y_[c] - y_[a]) - (x_[c] - x_[a]) * (y_[b] - y_[a]); }

@@ -2,8 +2,8 @@
 // Gaussian mask, added up where they land, as a view from the light sees it; then the map's flux becomes irradiance.
 //
 // Known differences from the tutorial: the mask is divided by its sum over the texels that the sprite covers, so that a
-// photon deposits exactly its flux; the map gets a view of its own, fitted to where the light lands, and what falls outside
-// that goes into a second, wider map; no exponent.
+// photon deposits exactly its flux; sprites are as wide as their photons' neighbours are apart; the map gets a view of its
+// own, fitted to where the light lands, and what falls outside that goes into a second, wider map; no exponent.
 #pragma once
 #include "pipeline/math.hpp"
 #include "stages/surfaces.hpp"

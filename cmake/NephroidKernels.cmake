@@ -27,16 +27,21 @@ else()
   set(NEPHROID_ISAS_BUILT ${NEPHROID_ISAS})
 endif()
 
-set(NEPHROID_ISA_NAME_scalar Scalar)
-set(NEPHROID_ISA_NAME_sse42 Sse42)
-set(NEPHROID_ISA_NAME_avx2 Avx2)
-set(NEPHROID_ISA_NAME_avx512 Avx512)
-set(NEPHROID_ISA_NAME_neon Neon)
-set(NEPHROID_ISA_FLAGS_sse42 -msse4.2)
-set(NEPHROID_ISA_FLAGS_avx2 -mavx2 -mf16c -mtune=haswell)
-set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mtune=skylake-avx512)
-# GCC 12 takes the deliberately undefined operand inside its own AVX-512 intrinsics for a mistake of ours.
-set(NEPHROID_ISA_FLAGS_GNU_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+# The function below may be called from a folder that does not see this one's variables: what it reads is global.
+set_property(GLOBAL PROPERTY NEPHROID_ISAS_BUILT ${NEPHROID_ISAS_BUILT})
+set_property(GLOBAL PROPERTY NEPHROID_ISOLATE_KERNELS ${NEPHROID_ISOLATE_KERNELS})
+macro(_nephroid_isa_settings)
+  set(NEPHROID_ISA_NAME_scalar Scalar)
+  set(NEPHROID_ISA_NAME_sse42 Sse42)
+  set(NEPHROID_ISA_NAME_avx2 Avx2)
+  set(NEPHROID_ISA_NAME_avx512 Avx512)
+  set(NEPHROID_ISA_NAME_neon Neon)
+  set(NEPHROID_ISA_FLAGS_sse42 -msse4.2)
+  set(NEPHROID_ISA_FLAGS_avx2 -mavx2 -mf16c -mtune=haswell)
+  set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mtune=skylake-avx512)
+  # GCC 12 takes the deliberately undefined operand inside its own AVX-512 intrinsics for a mistake of ours.
+  set(NEPHROID_ISA_FLAGS_GNU_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+endmacro()
 
 # A target with the kernels' compile flags and its own usage requirements, for one instruction set.
 function(_nephroid_kernel_objects target isa out)
@@ -46,22 +51,32 @@ function(_nephroid_kernel_objects target isa out)
   target_compile_definitions(${objects} PRIVATE NEPHROID_KERNEL_ISA=Isa::${NEPHROID_ISA_NAME_${isa}}
     $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
   target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+  # GCC marks inline variables, which an unoptimised build keeps, as unique in the whole program: those cannot be made local.
   target_compile_options(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${NEPHROID_ISA_FLAGS_${isa}}
-    $<$<CXX_COMPILER_ID:GNU>:${NEPHROID_ISA_FLAGS_GNU_${isa}}>)
+    "$<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique;${NEPHROID_ISA_FLAGS_GNU_${isa}}>")
   target_link_libraries(${objects} PRIVATE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
   set_target_properties(${objects} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
 function(nephroid_add_kernels target)
+  _nephroid_isa_settings()
+  get_property(isas GLOBAL PROPERTY NEPHROID_ISAS_BUILT)
+  get_property(isolate GLOBAL PROPERTY NEPHROID_ISOLATE_KERNELS)
   list(TRANSFORM ARGN REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1" OUTPUT_VARIABLE files)
-  foreach(isa IN ITEMS scalar LISTS NEPHROID_ISAS_BUILT)
+  foreach(isa IN ITEMS scalar LISTS isas)
     _nephroid_kernel_objects(${target} ${isa} objects ${files})
-    if(NEPHROID_ISOLATE_KERNELS AND NEPHROID_ISA_FLAGS_${isa})
+    if(isolate AND NEPHROID_ISA_FLAGS_${isa})
+      # Where lld is installed CMake prefers it for Clang, but it does not take groups apart.
+      set(linker ${CMAKE_LINKER})
+      if(linker MATCHES "lld")
+        find_program(NEPHROID_GNU_LD ld.bfd REQUIRED)
+        set(linker ${NEPHROID_GNU_LD})
+      endif()
       set(isolated ${CMAKE_CURRENT_BINARY_DIR}/${target}_${isa}_kernels.o)
       add_custom_command(
         OUTPUT ${isolated}
-        COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${isolated} $<TARGET_OBJECTS:${objects}>
+        COMMAND ${linker} -r --force-group-allocation -o ${isolated} $<TARGET_OBJECTS:${objects}>
         COMMAND ${CMAKE_OBJCOPY} --wildcard "--keep-global-symbol=_ZN8nephroid*Kernels*5tableEv" ${isolated}
         DEPENDS $<TARGET_OBJECTS:${objects}>
         COMMAND_EXPAND_LISTS VERBATIM COMMENT "Isolating ${isa} kernels of ${target}")

@@ -1,6 +1,8 @@
 # What all targets of this project share.
 
-set(NEPHROID_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
+# Masks are combined with & and |, and a mask of one lane is a bool: Clang would rather have && there.
+set(NEPHROID_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 
 function(nephroid_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -1,18 +1,17 @@
 // nephroid render: a scene to a picture.
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "pipeline/math.hpp"
 #include "tools/commands.hpp"
 #include "tools/debug_pixel.hpp"
 #include "tools/frame_statistics.hpp"
+#include "tools/number_range.hpp"
 #include "tools/picture_file.hpp"
 #include "tools/progress.hpp"
 #include "tools/render_options.hpp"
-#include "tools/text_file.hpp"
+#include "tools/whole_file.hpp"
 
 namespace nephroid {
 
@@ -39,7 +38,9 @@ void check(const Faults& faults) {
 bool parse_frames(const std::string& text, int& first, int& last) {
     if (text.empty()) return false;
     char rest = 0;
-    if (std::sscanf(text.c_str(), "%d:%d%c", &first, &last, &rest) != 2 || first < 0 || last < first || last > 999999) throw std::runtime_error("--frames: '" + text + "' is not FIRST:LAST");
+    constexpr int most = 999999;
+    if (std::sscanf(text.c_str(), "%7d:%7d%c", &first, &last, &rest) != 2 || first < 0 || last < first || last > most)
+        throw std::runtime_error("--frames: '" + text + "' is not FIRST:LAST, two numbers from 0 to " + std::to_string(most));
     return true;
 }
 
@@ -94,15 +95,31 @@ PictureData picture_of(const stages::Picture& terms, bool layers) {
     return p;
 }
 
+// "X,Y", or nothing: -1.
+glm::ivec2 parse_pixel(const std::string& text) {
+    glm::ivec2 pixel{-1};
+    char rest = 0;
+    if (!text.empty() && (std::sscanf(text.c_str(), "%8d,%8d%c", &pixel.x, &pixel.y, &rest) != 2 || pixel.x < 0 || pixel.y < 0))
+        throw std::runtime_error("--debug-pixel: '" + text + "' is not COLUMN,ROW");
+    return pixel;
+}
+
+// Before anything is loaded or rendered: what is asked for can be written.
+void check_outputs(const RenderArguments& a) {
+    check_picture_path(a.out);
+    const std::string ending = picture_ending(a.out);
+    if (a.layers && (ending == ".png" || ending == ".hdr")) throw std::runtime_error("--layers: " + a.out + " has no room for them; EXR and TIFF have");
+    if (a.exposure != 0.0f && ending != ".png") throw std::runtime_error("--exposure: " + a.out + " holds radiance as it is; only a PNG is exposed");
+    if (a.stats.empty()) return;
+    check_file_path(a.stats);
+    if (a.stats == a.out) throw std::runtime_error(a.out + ": the picture and its statistics cannot be one file");
+}
+
 void run(RenderArguments& a) {
     int first_frame = 0, last_frame = 0;
     const bool numbered = parse_frames(a.frames, first_frame, last_frame);
-    check_picture_path(a.out);
-    if (!a.stats.empty()) check_text_path(a.stats);
-    glm::ivec2 debug{-1};
-    char rest = 0;
-    if (!a.debug_pixel.empty() && (std::sscanf(a.debug_pixel.c_str(), "%d,%d%c", &debug.x, &debug.y, &rest) != 2 || debug.x < 0 || debug.y < 0))
-        throw std::runtime_error("--debug-pixel: '" + a.debug_pixel + "' is not COLUMN,ROW");
+    const glm::ivec2 debug = parse_pixel(a.debug_pixel);
+    check_outputs(a);
 
     FrameTimes times;
     const double load_start = now_ms();
@@ -124,6 +141,7 @@ void run(RenderArguments& a) {
     check(renderer.faults());
     times.prepare_ms = now_ms() - prepare_start;
     Progress progress;
+    std::string progress_prefix;
     renderer.listen(&progress);
     DebugPixel observer(debug * a.options.settings.samples_side);
     if (debug.x >= 0) renderer.observe(&observer);
@@ -135,7 +153,11 @@ void run(RenderArguments& a) {
     base.high = built.world.high;
     std::string hash;
     for (int frame = first_frame; frame <= last_frame; ++frame) {
-        if (numbered) place_frame(base, built.world, frame, a.orbit_light, a.orbit_camera);
+        if (numbered) {
+            place_frame(base, built.world, frame, a.orbit_light, a.orbit_camera);
+            progress_prefix = "frame " + std::to_string(frame) + " of " + std::to_string(first_frame) + " to " + std::to_string(last_frame);
+            progress.set_prefix(progress_prefix.c_str());
+        }
         for (int r = 0; r < a.runs; ++r) {
             const double start = now_ms();
             check(renderer.render());
@@ -146,7 +168,7 @@ void run(RenderArguments& a) {
         times.write_ms += now_ms() - write_start;
         if (a.hash) std::printf("%s\n", hash.c_str());
     }
-    if (!a.stats.empty()) write_text(a.stats, statistics_json(a.options, device, renderer, times, hash));
+    if (!a.stats.empty()) write_whole_file(a.stats, statistics_json(a.options, device, renderer, times, hash));
 }
 
 }  // namespace
@@ -157,13 +179,13 @@ void add_render_command(CLI::App& app) {
     a->options.add_to(*c);
     c->add_option("-o,--output", a->out, "The picture: .exr, .png, .tif or .hdr")->required()->type_name("FILE");
     c->add_flag("--layers", a->layers, "EXR and TIFF: each term of the picture apart, too (caustic.R ..., direct.R ..., emission.R ...)");
-    c->add_option("--exposure", a->exposure, "PNG: brighter by this many stops")->check(CLI::Range(-64.0f, 64.0f))->capture_default_str();
+    c->add_option("--exposure", a->exposure, "PNG: brighter by this many stops")->check(number_in(-64, 64))->capture_default_str();
     c->add_flag("--hash", a->hash, "Print the SHA-1 of the picture's pixels");
     c->add_option("--stats", a->stats, "Write times, memory, statistics and the energy audit as JSON")->type_name("FILE");
     c->add_option("--runs", a->runs, "Render so often; times are medians")->check(CLI::Range(1, 10000))->capture_default_str();
-    c->add_option("--frames", a->frames, "Render frames FIRST to LAST; #s in the output's name become the number")->type_name("FIRST:LAST");
-    c->add_option("--orbit-light", a->orbit_light, "Degrees that the lights turn about the vertical axis per frame")->capture_default_str();
-    c->add_option("--orbit-camera", a->orbit_camera, "Degrees that the camera turns about the vertical axis per frame")->capture_default_str();
+    c->add_option("--frames", a->frames, "Render frames FIRST to LAST; #s in the output's name become the number, which else stands before the ending")->type_name("FIRST:LAST");
+    c->add_option("--orbit-light", a->orbit_light, "Degrees that the lights turn about the vertical axis per frame")->check(number_in(-360, 360))->capture_default_str();
+    c->add_option("--orbit-camera", a->orbit_camera, "Degrees that the camera turns about the vertical axis per frame")->check(number_in(-360, 360))->capture_default_str();
     c->add_option("--debug-pixel", a->debug_pixel, "Run on one thread and lane, and call nephroid_debug_pixel() before every pixel-stage invocation there")->type_name("COLUMN,ROW");
     c->add_flag("--keep-idle-passes", a->keep_idle, "Run passes that the plan would leave out; the picture is the same");
     c->callback([a] { run(*a); });

@@ -1,5 +1,7 @@
 #include "tools/render_options.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +11,7 @@
 
 #include "scenes/load.hpp"
 #include "scenes/medium_json.hpp"
+#include "tools/number_range.hpp"
 
 namespace nephroid {
 
@@ -44,6 +47,20 @@ void parse_size(const std::string& text, int& width, int& height) {
     height = static_cast<int>(h);
 }
 
+// A system that runs out of memory ends the program, or another one, without a word.
+void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
+    const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const scenes::Material& m) { return m.kind() != scenes::SurfaceKind::Lambert; });
+    // Measured: what a sample's terms, positions and, behind something specular, its depth layers take.
+    const double bytes_per_sample = specular ? 200 : 100;
+    const int width = s.width * s.samples_side, height = s.height * s.samples_side;
+    const double needed = static_cast<double>(width) * height * bytes_per_sample;
+    const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed <= there) return;
+    constexpr double gib = 1073741824.0;
+    throw std::runtime_error("--size: " + std::to_string(width) + " x " + std::to_string(height) + " samples need some " + std::to_string(std::lround(needed / gib)) +
+                             " GiB of memory, and there are " + std::to_string(std::lround(there / gib)));
+}
+
 }  // namespace
 
 void RenderOptions::add_to(CLI::App& c) {
@@ -60,8 +77,9 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
     c.add_option("--map-size", settings.map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
-    c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing asks for")->check(CLI::Range(0.0f, 64.0f))->capture_default_str();
+    c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing asks for")->check(number_in(0, 64))->capture_default_str();
     c.add_option("--bounces", settings.bounces, "Surfaces that light meets in an object, at most")->check(CLI::Range(1, 64))->capture_default_str();
+    c.add_flag("--inner-reflections,!--no-inner-reflections", settings.inner_reflections, "Follow what surfaces reflect in part inside objects (default), or leave it out");
     c.add_option("--depth-layers", settings.solid_layers, "Times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
     c.add_option("--size", size, "Of the picture, WIDTHxHEIGHT (default: 768 high, as wide as the camera's aspect)");
     c.add_option("--samples", samples, "Per pixel, rounded up to a square; a pixel is their mean")->check(CLI::Range(1, 256))->capture_default_str();
@@ -85,6 +103,7 @@ void RenderOptions::finish(const scenes::Scene& loaded) {
     }
     if (settings.width * settings.samples_side > max_texture_size || settings.height * settings.samples_side > max_texture_size)
         throw std::runtime_error("--samples: size times samples along an edge must not exceed " + std::to_string(max_texture_size));
+    check_memory(loaded, settings);
 }
 
 scenes::Scene load_for_render(const RenderOptions& o) {

@@ -5,6 +5,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "callers_mode.hpp"
 #include "draw_kit.hpp"
 #include "heavy_draws.hpp"
 #include "pipeline/fp_environment.hpp"
@@ -12,28 +13,6 @@
 using namespace test;
 
 namespace {
-
-// A mode for the calling thread, put back at the end.
-class CallersMode {
-public:
-    CallersMode(int rounding, bool flush_denormals) {
-        std::fegetenv(&saved_);
-        std::fesetround(rounding);
-#if defined(__SSE2__)
-        if (flush_denormals) _mm_setcsr(_mm_getcsr() | 0x8040);  // results and operands
-#elif defined(__aarch64__)
-        if (flush_denormals) {
-            unsigned long long w;
-            __asm__ volatile("mrs %0, fpcr" : "=r"(w));
-            __asm__ volatile("msr fpcr, %0" : : "r"(w | 1u << 24));
-        }
-#endif
-    }
-    ~CallersMode() { std::fesetenv(&saved_); }
-
-private:
-    std::fenv_t saved_;
-};
 
 // The mode as the hardware has it, sticky flags aside.
 unsigned long long mode() {

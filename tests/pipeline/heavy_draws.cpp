@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "draw_kit.hpp"
+#include "pipeline/math.hpp"
 
 namespace test {
 
@@ -20,8 +21,9 @@ template <class Add>
 void add_triangles(Random& random, int count, const Add& add) {
     for (int k = 0; k < count; ++k) {
         const glm::vec4 p = somewhere(random, random.one_in(2));
-        const float extent = std::exp2(k % 40 == 0 ? random.real(-3, 1) : random.real(-8, -2));
-        for (int c = 0; c < 3; ++c) add(p + glm::vec4(random.real(-extent, extent), random.real(-extent, extent), random.real(-extent, extent), 0));
+        const float extent = nephroid::exp2(k % 40 == 0 ? random.real(-3, 1) : random.real(-8, -2));
+        // In braces: compilers evaluate a call's arguments in different orders.
+        for (int c = 0; c < 3; ++c) add(p + glm::vec4{random.real(-extent, extent), random.real(-extent, extent), random.real(-extent, extent), 0});
     }
 }
 glm::vec4 color_of(Random& random) { return {random.real(-1, 2), random.real(0, 1) * 1e5f, random.real(0, 1e-3f), random.real(0, 1)}; }

@@ -1,0 +1,57 @@
+#include "scene_hash.hpp"
+
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "scenes/bundled.hpp"
+#include "sha1.hpp"
+#include "stages/renderer.hpp"
+#include "tools/world_builder.hpp"
+
+namespace test {
+
+using namespace nephroid;
+
+namespace {
+
+void check(const Faults& faults) {
+    if (faults.empty()) return;
+    char text[1024];
+    faults.format(text, sizeof text);
+    throw std::runtime_error(text);
+}
+
+// The pixels of the picture as a float EXR file has them: R, G, B, row 0 at the top.
+std::string hash_of_picture(const stages::Picture& terms) {
+    Sha1 hash;
+    std::vector<float> row;
+    for (int y = 0; y < terms.direct->height(); ++y) {
+        const auto texels = [y](const Texture* t) { return reinterpret_cast<const float*>(t->row(y)); };
+        const float *direct = texels(terms.direct), *caustic = texels(terms.caustic), *emission = texels(terms.emission);
+        row.clear();
+        for (int x = 0; x < terms.direct->width(); ++x)
+            for (int c = 0; c < 3; ++c) row.push_back((direct[4 * x + c] + caustic[4 * x + c]) + emission[4 * x + c]);
+        hash.add(row.data(), row.size() * sizeof(float));
+    }
+    return hash.finish();
+}
+
+}  // namespace
+
+std::string hash_of_scene(Device& device, std::string_view name, const Around& around) {
+    BuiltWorld built = build_world(device, scenes::bundled_scene(name));
+    stages::Settings settings;
+    settings.width = 64;
+    settings.height = 48;
+    settings.photons = settings.map_size = 64;
+    std::optional<stages::Renderer> renderer;
+    around([&] { renderer.emplace(device, built.world, settings); });
+    check(renderer->faults());
+    Faults faults;
+    around([&] { faults = renderer->render(); });
+    check(faults);
+    return hash_of_picture(renderer->picture());
+}
+
+}  // namespace test

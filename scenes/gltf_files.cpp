@@ -73,8 +73,9 @@ std::vector<unsigned char> read_file(const fs::path& path, const std::string& ob
     std::error_code error;
     // A pipe or a device may never end, or never begin.
     const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) context.refuse(object, "no such file: " + path.filename().string());
-    if (!fs::is_regular_file(status)) context.refuse(object, "not a regular file: " + path.filename().string());
+    const std::string named = path.has_filename() ? ": " + path.filename().string() : "";
+    if (!fs::exists(status)) context.refuse(object, "no such file" + named);
+    if (!fs::is_regular_file(status)) context.refuse(object, "not a regular file" + named);
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) context.refuse(object, "cannot be read: " + error.message());
     if (size > context.limits.file_bytes)

@@ -159,5 +159,5 @@ TEST_CASE("a bundled name, a file, or a line that says what there is") {
     CHECK(line_of("prisms") ==
           "prisms: there is no such file, nor a bundled scene of this name (glass-sphere, mirror-ring, pool, glass-torus, sphere-in-fog, "
           "sphere-above-water, prism, wine-glass, closed-box)");
-    CHECK(line_of("/") == "/: not a regular file: ");
+    CHECK(line_of("/") == "/: not a regular file");
 }

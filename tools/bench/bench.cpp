@@ -35,9 +35,10 @@ std::vector<int> Bench::numbers(const std::string& key, std::vector<int> standar
 }
 
 bool Bench::wants(const std::string& workload, const std::string& variant, const std::string& parameters) const {
-    if (options_.only.empty()) return true;
     const std::string all = workload + "/" + variant + "/" + parameters;
-    return std::any_of(options_.only.begin(), options_.only.end(), [&](const std::string& s) { return all.find(s) != std::string::npos; });
+    const bool wanted = options_.only.empty() || std::any_of(options_.only.begin(), options_.only.end(), [&](const std::string& s) { return all.find(s) != std::string::npos; });
+    any_wanted_ = any_wanted_ || wanted;
+    return wanted;
 }
 
 void Bench::measure(const std::string& workload, const std::string& variant, const std::string& parameters, const std::vector<Stage>& stages,
@@ -88,7 +89,8 @@ void Bench::dump(const std::string& name, const float* data, int width, int heig
         std::FILE* file = std::fopen(path.c_str(), "wb");
         if (!file) throw std::runtime_error(path + ": cannot be written");
         content(file);
-        if (std::fclose(file) != 0) throw std::runtime_error(path + ": cannot be written");
+        const bool failed = std::ferror(file) != 0;
+        if (std::fclose(file) != 0 || failed) throw std::runtime_error(path + ": cannot be written");
     };
     write(base + ".f32", [&](std::FILE* f) { std::fwrite(data, 4, static_cast<std::size_t>(width) * height * channels * layers, f); });
     write(base + ".json", [&](std::FILE* f) {
@@ -152,6 +154,7 @@ void run(const Options& options) {
     run_refine(bench);
     run_final_shade(bench);
     run_volume_march(bench);
+    if (!bench.any_wanted()) throw std::runtime_error("bench: no workload, variant or size has '" + options.only.front() + "' in its name");
 }
 
 }  // namespace nephroid::bench

@@ -39,6 +39,7 @@ public:
     Device& device() const { return device_; }
     std::vector<int> numbers(const std::string& key, std::vector<int> standard) const;
     bool wants(const std::string& workload, const std::string& variant, const std::string& parameters) const;
+    bool any_wanted() const { return any_wanted_; }  // so far
     bool dumping() const { return !options_.dump_folder.empty(); }
     bool dumping_inputs() const { return dumping() && options_.dump_inputs; }
 
@@ -53,6 +54,7 @@ public:
 private:
     Options options_;
     Device& device_;
+    mutable bool any_wanted_ = false;
 };
 
 // Adds up the statistics of draws; a draw with faults ends the program with its line.

@@ -139,13 +139,13 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
     }
     if (best_gain == 0) best = {-0.5 * wide_extent, 0.5 * wide_extent, -0.5 * wide_extent, 0.5 * wide_extent};
     const auto [left, right, bottom, top] = best;
-    constexpr double margin = 1.04;
+    constexpr double margin = 1.0 / (1 - focus_border);
     fit.view.centre = {static_cast<float>((left + right) * 0.5), static_cast<float>((bottom + top) * 0.5)};
     fit.view.half = {static_cast<float>(std::max((right - left) * 0.5 * margin, least)), static_cast<float>(std::max((top - bottom) * 0.5 * margin, least))};
 
     for_photons([&](Band& b, const Photon& photon) {
         const glm::vec4 c = fit.view.clip<float>(photon.position);
-        constexpr float inside = 0.95f;  // splats have a size
+        constexpr float inside = 1 - focus_border;
         if (!(c.w > 0) || std::abs(c.x) > c.w * inside || std::abs(c.y) > c.w * inside) b.outside = true;
     });
     for (const Band& b : bands_) fit.outside = fit.outside || b.outside;

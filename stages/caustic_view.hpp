@@ -9,6 +9,9 @@
 
 namespace nephroid::stages {
 
+// Along its border, so wide a share of half the view, photons are shared between the view's map and the wide one.
+inline constexpr float focus_border = 0.2f;
+
 class CausticViewFitter {
 public:
     CausticViewFitter();
@@ -17,7 +20,7 @@ public:
     struct Fit {
         bool empty = true;   // no photon landed
         View view;           // holds nearly all of the flux
-        bool outside = false;  // some photons lie outside the view
+        bool outside = false;  // some photons lie outside the view or in its border
     };
     // Photons: [side][side] of landing place and 1, or 0 where there is none; fluxes, W. The view looks from the light; a
     // directional light's is parallel. `reach` is a length that the scene does not exceed. The same photons give the same

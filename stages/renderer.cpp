@@ -489,7 +489,7 @@ void Renderer::Impl::splat(const Pass& pass) {
     place.cube = light.kind != LightKind::Directional;
     place.faces = cube_views(light.position);
     place.parallel = parallel_view(light);
-    place.focus_size = place.map_size = settings.map_size;
+    place.map_size = settings.map_size;
     // Vertices of a mesh have no neighbours in the buffer.
     place.sprite_size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
     PipelineState s = screen_state("splat photons");

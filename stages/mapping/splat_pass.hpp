@@ -6,6 +6,7 @@
 // own, fitted to where the light lands, and what falls outside that goes into a second, wider map; no exponent.
 #pragma once
 #include "pipeline/math.hpp"
+#include "stages/caustic_view.hpp"
 #include "stages/surfaces.hpp"
 
 namespace nephroid::stages::mapping {
@@ -29,11 +30,10 @@ struct PlacePhoton {
     Texture2DView<Format::RGBA32F> positions, fluxes;
     int log2_side;  // photons along an edge of the buffer
     View focus;
-    bool wide = false;  // draws those that the focus does not hold
+    bool wide = false;  // draws what the focus does not hold
     bool cube = false;  // the wide map: six faces, or one parallel view
     CubeViews faces;
     View parallel;
-    int focus_size;      // texels along an edge of the focus' map
     int map_size;        // of the map that is drawn into
     float sprite_size;   // texels; 0: as the spacing of the photons asks for
 
@@ -85,12 +85,12 @@ struct PlacePhoton {
         return min(max(sqrt(max(squared_spacing(at, x, y, 1, 0), squared_spacing(at, x, y, 0, 1))) * F(overlap), F(narrowest)), F(widest));
     }
 
-    // Whether a photon is the focus' and not the wide map's: a sprite of usual width lies in its view. Of a wider one all
-    // flux goes to the texels that are there.
+    // How much of a photon is the focus' and not the wide map's. It fades along the window's border: the maps' splats are of
+    // different width, and a photon more or less would show as a line.
     template <class F>
-    LaneMask<F> in_focus(const vec4<F>& clip) const {
-        const float width = sprite_size > 0 ? sprite_size : narrowest, inside = 1.0f - (width + 1.0f) / static_cast<float>(focus_size);
-        return (clip.w > F(0.0f)) & (abs(clip.x) <= clip.w * F(inside)) & (abs(clip.y) <= clip.w * F(inside));
+    F focus_share(const vec4<F>& clip) const {
+        const F from_edge = F(1.0f) - max(abs(clip.x), abs(clip.y)) / clip.w, t = min(max(from_edge * F(1.0f / focus_border), F(0.0f)), F(1.0f));
+        return select(clip.w > F(0.0f), t * t * (F(3.0f) - F(2.0f) * t), F(0.0f));
     }
     // The mask's sum over the texels that a sprite covers along one axis.
     template <class F>
@@ -114,8 +114,8 @@ struct PlacePhoton {
         LaneMask<F> drawn = photon.w > F(0.0f);
         if (none(drawn)) return out;
         const vec3<F> position(photon);
-        const LaneMask<F> focused = in_focus(focus.clip(position));
-        drawn = drawn & (wide ? !focused : focused);
+        const F focused = focus_share(focus.clip(position)), share = wide ? F(1.0f) - focused : focused;
+        drawn = drawn & (share > F(0.0f));
         if (none(drawn)) return out;
         const Place<F> at = place(position);
         const F width = width_of(at, x, y);
@@ -123,7 +123,7 @@ struct PlacePhoton {
         out.position = select(drawn, at.clip, out.position);
         out.layer = at.layer;
         out.point_size = width;
-        out.flux = vec3<F>(fluxes.fetch<F>(x, y)) / max(sum, F(1e-20f));
+        out.flux = vec3<F>(fluxes.fetch<F>(x, y)) * (share / max(sum, F(1e-20f)));
         return out;
     }
 };

@@ -14,7 +14,8 @@ struct ShadowMap {
     Texture2DArrayView<Format::R32F> ids;    // surface_id()
     int size = 0;
 
-    // The part of the light's view round a point that the light sees: percentage-closer filtering over 3 x 3 texels.
+    // The part of the light's view round a point that the light sees: percentage-closer filtering over a square
+    // of 3 x 3 texels round it, which covers those at its rim in part.
     //
     // Each texel is compared with the receiver's own plane at that texel, so that no bias is needed for flat surfaces, and
     // little for curved ones. A point counts only if some texel shows the surface it lies on, from the side it is seen
@@ -31,18 +32,20 @@ struct ShadowMap {
             u = p.u, v = p.v;
         }
         const F side(static_cast<float>(size)), inverse_side(1.0f / static_cast<float>(size));
-        const LaneInt<F> x = to_int(floor(u * side)), y = to_int(floor(v * side)), last(size - 1);
+        const F first_x = floor(u * side - F(0.5f)), first_y = floor(v * side - F(0.5f)), beyond_x = u * side - F(0.5f) - first_x, beyond_y = v * side - F(0.5f) - first_y;
+        const LaneInt<F> x = to_int(first_x), y = to_int(first_y), last(size - 1);
+        const F across[4] = {F(1.0f) - beyond_x, F(1.0f), F(1.0f), beyond_x}, down[4] = {F(1.0f) - beyond_y, F(1.0f), F(1.0f), beyond_y};
         F lit(0.0f);
         LaneMask<F> seen(false);
-        for (int j = -1; j <= 1; ++j) {
-            for (int i = -1; i <= 1; ++i) {
+        for (int j = -1; j <= 2; ++j) {
+            for (int i = -1; i <= 2; ++i) {
                 const LaneInt<F> tx = min(max(x + LaneInt<F>(i), LaneInt<F>(0)), last), ty = min(max(y + LaneInt<F>(j), LaneInt<F>(0)), last);
                 const F own = plane_nearness(position, n, layer, (to_float(tx) + F(0.5f)) * inverse_side, (to_float(ty) + F(0.5f)) * inverse_side);
                 const F first = depth.fetch<F>(tx, ty, layer).x;
                 constexpr float rounding = 1e-5f, curvature = 2e-3f;
                 const LaneMask<F> same = ids.fetch<F>(tx, ty, layer).x == id;
                 // A curved surface lies a little before its own plane.
-                lit = lit + select(own >= first * select(same, F(1.0f - curvature), F(1.0f - rounding)), F(1.0f), F(0.0f));
+                lit = lit + select(own >= first * select(same, F(1.0f - curvature), F(1.0f - rounding)), across[i + 1] * down[j + 1], F(0.0f));
                 seen = seen | (same & (abs(own - first) <= first * F(curvature)));
             }
         }

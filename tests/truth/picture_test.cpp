@@ -31,7 +31,7 @@ constexpr Case cases[] = {
     {"sphere-in-fog", 0.05, 0.05, nullptr},
     {"prism", 0.05, 0.1, nullptr},
     {"wine-glass", 0.05, 0.05, nullptr},
-    {"sphere-above-water", 0.05, 0.2, "light goes through the sphere and then the water: the method follows light through one object only"},
+    {"sphere-above-water", 0.15, 0.2, "light goes through the sphere and then the water: the method follows light through one object only"},
 };
 
 }  // namespace

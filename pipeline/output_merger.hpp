@@ -3,6 +3,7 @@
 // Fragments are merged one after another, so that those of one pixel meet it in primitive order; where no two of a group
 // can share a pixel the depth test works on all lanes at once. A NaN is stored as 0x7fc00000.
 #pragma once
+#include <algorithm>
 #include <cstring>
 
 #include "pipeline/draw_context.hpp"
@@ -97,20 +98,60 @@ inline Color4 blend(const BlendState& state, Color4 source, Color4 destination) 
     return result;
 }
 
+// One texel.
+template <Format format, MergeMode mode>
+inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
+    Color4 color;
+    std::memcpy(&color, source, sizeof color);
+    // What enters the blender of a fixed-point target is clamped to its range first, as in Direct3D.
+    if constexpr (mode != MergeMode::Opaque && (format == Format::RGBA8 || format == Format::RGBA8Srgb))
+        for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
+    if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
+    if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
+    store_texel<format>(at, color);
+}
+
+// Neighbours in a row. Where a texel is what a colour is, one operation serves as many as fit into a register.
+template <class F, Format format, MergeMode mode>
+inline void merge_run(const ColorTarget& how, std::byte* at, const float* source, int count) {
+    constexpr int lanes = lanes_of<F>;
+    if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4) {
+        for (; count >= lanes / 4; count -= lanes / 4, at += lanes * 4, source += lanes) {
+            F color = load_lanes<F>(source);
+            if constexpr (mode == MergeMode::Additive) color = color + load_lanes<F>(at);
+            store_lanes(at, select(is_nan(color), F(canonical_nan), color));
+        }
+    }
+    for (; count > 0; --count, at += bytes_per_texel(format), source += 4) merge_texel<format, mode>(how, at, source);
+}
+
 // Merges the colours of a group's fragments into one target. `colors` holds the lanes' colours one after another.
 template <class F, Format format, MergeMode mode>
 inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t pitch, const FragmentGroup<lanes_of<F>>& group, const float* colors, std::uint32_t mask) {
+    constexpr int lanes = lanes_of<F>;
+    const auto texel = [&](int l) { return base + group.y[l] * pitch + group.x[l] * bytes_per_texel(format); };
+    if constexpr (lanes > 1) {
+        const int run = group.run_width;
+        if (run > 0 && (mask & (mask + 1)) == 0) {
+            const int end = __builtin_popcount(mask);
+            for (int l = 0, in_row = group.run_start; l < end; in_row = 0) {
+                const int count = std::min(run - in_row, end - l);
+                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, count);
+                l += count;
+            }
+            return;
+        }
+        if (run == 4) {  // blocks that are not whole: their whole rows
+            for (int l = 0; l < lanes; l += 4) {
+                if ((mask >> l & 15u) != 15u) continue;
+                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, 4);
+                mask &= ~(15u << l);
+            }
+        }
+    }
     for (std::uint32_t bits = mask; bits; bits &= bits - 1) {
         const int l = __builtin_ctz(bits);
-        std::byte* at = base + group.y[l] * pitch + group.x[l] * bytes_per_texel(format);
-        Color4 color;
-        std::memcpy(&color, colors + 4 * l, sizeof color);
-        // What enters the blender of a fixed-point target is clamped to its range first, as in Direct3D.
-        if constexpr (mode != MergeMode::Opaque && (format == Format::RGBA8 || format == Format::RGBA8Srgb))
-            for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
-        if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
-        if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
-        store_texel<format>(at, color);
+        merge_texel<format, mode>(how, texel(l), colors + 4 * l);
     }
 }
 

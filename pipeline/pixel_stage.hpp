@@ -9,18 +9,6 @@
 
 namespace nephroid {
 
-template <class F>
-inline F interpolate(F a, F b, F c, F b1, F b2) {
-    return (a + b1 * (b - a)) + b2 * (c - a);
-}
-template <class F, int L>
-inline glm::vec<L, F, glm::defaultp> interpolate(const glm::vec<L, F, glm::defaultp>& a, const glm::vec<L, F, glm::defaultp>& b,
-                                                 const glm::vec<L, F, glm::defaultp>& c, F b1, F b2) {
-    glm::vec<L, F, glm::defaultp> r;
-    for (int k = 0; k < L; ++k) r[k] = interpolate(a[k], b[k], c[k], b1, b2);
-    return r;
-}
-
 // A struct's member for all lanes, from one struct of plain values.
 inline void spread(float& out, float value) { out = value; }
 inline void spread(std::int32_t& out, std::int32_t value) { out = value; }
@@ -31,69 +19,84 @@ inline void spread(glm::vec<L, T, glm::defaultp>& out, const glm::vec<L, S, glm:
     for (int k = 0; k < L; ++k) spread(out[k], value[k]);
 }
 
-// a + b1 (b - a) + b2 (c - a) with the same a, b, c for all lanes.
-template <class F>
-inline void interpolate_uniform(F& out, float a, float b, float c, F b1, F b2) {
-    out = (F(a) + b1 * F(b - a)) + b2 * F(c - a);
-}
-template <class F, int L>
-inline void interpolate_uniform(glm::vec<L, F, glm::defaultp>& out, const glm::vec<L, float, glm::defaultp>& a,
-                                const glm::vec<L, float, glm::defaultp>& b, const glm::vec<L, float, glm::defaultp>& c, F b1, F b2) {
-    for (int k = 0; k < L; ++k) interpolate_uniform(out[k], a[k], b[k], c[k], b1, b2);
-}
-
 template <class V>
 inline constexpr int varying_count = 0;
 template <class V> requires(requires { V::varyings; })
 inline constexpr int varying_count<V> = static_cast<int>(std::tuple_size_v<decltype(V::varyings)>);
 
-template <class F, class VF, class Vf>
-inline VF pixel_input(const FragmentGroup<lanes_of<F>>& group, const std::byte* records) {
-    VF in{};
-    // Where nothing varies there may be no records.
-    if constexpr (constexpr int count = varying_count<VF>; count > 0) {
-        const F b1 = load_lanes<F>(group.b1), b2 = load_lanes<F>(group.b2), l1 = load_lanes<F>(group.l1), l2 = load_lanes<F>(group.l2);
-        if (group.constant) {
-            const VF vertex = group.uniform ? VF{} : gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
-            [&]<int... i>(std::integer_sequence<int, i...>) {
-                [[maybe_unused]] const auto fill = [&](const auto& wide, const auto& narrow) {
-                    if (group.uniform) spread(in.*wide.member, reinterpret_cast<const Vf*>(records)[group.leading[0]].*narrow.member);
-                    else in.*wide.member = vertex.*wide.member;
-                };
-                (fill(std::get<i>(VF::varyings), std::get<i>(Vf::varyings)), ...);
-            }
-            (std::make_integer_sequence<int, count>{});
-        } else if (group.uniform) {
-            const Vf* vertices = reinterpret_cast<const Vf*>(records);
-            const Vf &a = vertices[group.corner[0][0]], &b = vertices[group.corner[1][0]], &c = vertices[group.corner[2][0]], &leading = vertices[group.leading[0]];
-            [&]<int... i>(std::integer_sequence<int, i...>) {
-                [[maybe_unused]] const auto fill = [&](const auto& wide, const auto& narrow, auto mode) {
-                    if constexpr (mode() == Interpolation::Flat) spread(in.*wide.member, leading.*narrow.member);
-                    else if constexpr (mode() == Interpolation::Smooth) interpolate_uniform(in.*wide.member, a.*narrow.member, b.*narrow.member, c.*narrow.member, b1, b2);
-                    else interpolate_uniform(in.*wide.member, a.*narrow.member, b.*narrow.member, c.*narrow.member, l1, l2);
-                };
-                (fill(std::get<i>(VF::varyings), std::get<i>(Vf::varyings), std::integral_constant<Interpolation, std::get<i>(VF::varyings).mode>{}), ...);
-            }
-            (std::make_integer_sequence<int, count>{});
-        } else {
-            const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
-            const VF c = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[2])), leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
-            [&]<int... i>(std::integer_sequence<int, i...>) {
-                [[maybe_unused]] const auto fill = [&](const auto& wide, auto mode) {
-                    if constexpr (mode() == Interpolation::Flat) in.*wide.member = leading.*wide.member;
-                    else if constexpr (mode() == Interpolation::Smooth) in.*wide.member = interpolate(a.*wide.member, b.*wide.member, c.*wide.member, b1, b2);
-                    else in.*wide.member = interpolate(a.*wide.member, b.*wide.member, c.*wide.member, l1, l2);
-                };
-                (fill(std::get<i>(VF::varyings), std::integral_constant<Interpolation, std::get<i>(VF::varyings).mode>{}), ...);
-            }
-            (std::make_integer_sequence<int, count>{});
-        }
+// Calls f with each varying of the wide struct, that of the narrow one, and the mode as a constant.
+template <class VF, class Vf, class Function>
+[[gnu::always_inline]] inline void for_each_varying(const Function& f) {
+    if constexpr (varying_count<VF> > 0) [&]<int... i>(std::integer_sequence<int, i...>) {
+        (f(std::get<i>(VF::varyings).member, std::get<i>(Vf::varyings).member, std::integral_constant<Interpolation, std::get<i>(VF::varyings).mode>{}), ...);
     }
+    (std::make_integer_sequence<int, varying_count<VF>>{});
+}
+
+// What the fragments of a primitive interpolate between: the values at the first corner (flat ones: at the leading vertex),
+// and how much those at the others differ.
+template <class VF>
+struct CornerValues {
+    VF first, to_second, to_third;
+};
+
+// The same three vertices, or one vertex each, for all lanes.
+template <class F, class VF, class Vf>
+[[gnu::always_inline]] inline void load_corners(CornerValues<VF>& out, const FragmentGroup<lanes_of<F>>& group, const std::byte* records) {
+    if (group.uniform) {
+        const Vf* vertices = reinterpret_cast<const Vf*>(records);
+        const Vf &a = vertices[group.corner[0][0]], &b = vertices[group.corner[1][0]], &c = vertices[group.corner[2][0]], &leading = vertices[group.leading[0]];
+        for_each_varying<VF, Vf>([&](auto wide, auto narrow, auto mode) __attribute__((always_inline)) {
+            if constexpr (mode() == Interpolation::Flat) {
+                spread(out.first.*wide, leading.*narrow);
+            } else {
+                spread(out.first.*wide, a.*narrow);
+                spread(out.to_second.*wide, b.*narrow - a.*narrow);
+                spread(out.to_third.*wide, c.*narrow - a.*narrow);
+            }
+        });
+    } else {
+        const VF leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
+        if (group.constant) {
+            for_each_varying<VF, Vf>([&](auto wide, auto, auto) __attribute__((always_inline)) { out.first.*wide = leading.*wide; });
+            return;
+        }
+        const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
+        const VF c = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[2]));
+        for_each_varying<VF, Vf>([&](auto wide, auto, auto mode) __attribute__((always_inline)) {
+            if constexpr (mode() == Interpolation::Flat) {
+                out.first.*wide = leading.*wide;
+            } else {
+                out.first.*wide = a.*wide;
+                out.to_second.*wide = b.*wide - a.*wide;
+                out.to_third.*wide = c.*wide - a.*wide;
+            }
+        });
+    }
+}
+
+template <class F, class VF, class Vf>
+[[gnu::always_inline]] inline VF interpolate(const CornerValues<VF>& corners, const FragmentGroup<lanes_of<F>>& group) {
+    VF in{};
+    for_each_varying<VF, Vf>([&]([[maybe_unused]] auto wide, auto, auto mode) __attribute__((always_inline)) {
+        in.*wide = corners.first.*wide;
+        if constexpr (mode() != Interpolation::Flat) {
+            constexpr bool smooth = mode() == Interpolation::Smooth;
+            if (!group.constant)
+                in.*wide = (corners.first.*wide + corners.to_second.*wide * load_lanes<F>(smooth ? group.b1 : group.l1)) + corners.to_third.*wide * load_lanes<F>(smooth ? group.b2 : group.l2);
+        }
+    });
     return in;
 }
 
+// True where both groups' fragments belong to one primitive, as far as what they interpolate goes.
+template <int N>
+inline bool same_vertices(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
+    return a.uniform && b.uniform && a.leading[0] == b.leading[0] && a.corner[0][0] == b.corner[0][0] && a.corner[1][0] == b.corner[1][0] && a.corner[2][0] == b.corner[2][0];
+}
+
 template <class F>
-inline PixelInput<F> system_input(const FragmentGroup<lanes_of<F>>& group) {
+[[gnu::always_inline]] inline PixelInput<F> system_input(const FragmentGroup<lanes_of<F>>& group) {
     PixelInput<F> in;
     in.position = vec4<F>(to_float(load_lanes<LaneInt<F>>(group.x)) + 0.5f, to_float(load_lanes<LaneInt<F>>(group.y)) + 0.5f, load_lanes<F>(group.z), load_lanes<F>(group.w));
     in.point_coord = vec2<F>(load_lanes<F>(group.point_x), load_lanes<F>(group.point_y));
@@ -136,15 +139,25 @@ void shade_pixels(const PixelWork& work) {
     const PS& shader = *static_cast<const PS*>(work.shader);
     FragmentGroup<lanes_of<F>>* groups = static_cast<FragmentGroup<lanes_of<F>>*>(work.groups);
 
-    for (int g = 0; g < work.count; ++g) {
-        FragmentGroup<lanes_of<F>>& group = groups[g];
-        float* results = work.results + static_cast<std::size_t>(g) * work.result_stride;
-        if constexpr (std::is_void_v<In>) {
-            store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(group)));
-        } else {
-            const VF in = pixel_input<F, VF, Vf>(group, work.records);
-            if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(group)));
-            else store_result<F>(results, group.mask, shader.template operator()<F>(in));
+    for (int g = 0; g < work.count;) {
+        // Groups of one primitive together: what its vertices alone determine is then computed once for all of them, as far as
+        // the shader's call operator is inlined here.
+        CornerValues<std::conditional_t<std::is_void_v<In>, int, VF>> corners;
+        int end = g + 1;
+        if constexpr (!std::is_void_v<In> && varying_count<VF> > 0) {
+            while (end < work.count && same_vertices(groups[g], groups[end])) ++end;
+            load_corners<F, VF, Vf>(corners, groups[g], work.records);
+        }
+        for (; g < end; ++g) {
+            FragmentGroup<lanes_of<F>>& group = groups[g];
+            float* results = work.results + static_cast<std::size_t>(g) * work.result_stride;
+            if constexpr (std::is_void_v<In>) {
+                store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(group)));
+            } else {
+                const VF in = interpolate<F, VF, Vf>(corners, group);
+                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(group)));
+                else store_result<F>(results, group.mask, shader.template operator()<F>(in));
+            }
         }
     }
 }

@@ -20,16 +20,22 @@ class TileRasterizer {
     using M = LaneMask<F>;
     using Group = FragmentGroup<lanes>;
     static constexpr int block_width = lanes == 1 ? 1 : 4, block_height = lanes / block_width;
+    // Tiles are looked at in parts of one block per lane first.
+    static constexpr int part_width = block_width * block_width, part_height = block_height * block_height;
+
+    static constexpr std::uint32_t all_lanes_ = (1u << lanes) - 1u;
 
 public:
     TileRasterizer(const DrawContext& draw, int tile, TileScratch& scratch)
         : draw_(draw), target_(target_of(draw, tile)), target_index_(static_cast<int>(&target_ - draw.targets)), scratch_(scratch),
           groups_(reinterpret_cast<Group*>(scratch.groups)) {
         const int local = tile - target_.first_tile;
-        left_ = local % target_.tiles_x * tile_size;
-        top_ = local / target_.tiles_x * tile_size;
-        right_ = std::min(left_ + tile_size, target_.clip.right) - 1;
-        bottom_ = std::min(top_ + tile_size, target_.clip.bottom) - 1;
+        tile_left_ = local % target_.tiles_x * tile_size;
+        tile_top_ = local / target_.tiles_x * tile_size;
+        left_ = std::max(tile_left_, target_.clip.left);
+        top_ = std::max(tile_top_, target_.clip.top);
+        right_ = std::min(tile_left_ + tile_size, target_.clip.right) - 1;
+        bottom_ = std::min(tile_top_ + tile_size, target_.clip.bottom) - 1;
         const I lane_number = lane_index<F>();
         lane_x_ = lane_number & (block_width - 1);
         lane_y_ = lane_number >> (block_width == 4 ? 2 : 0);
@@ -87,59 +93,118 @@ private:
             return;
         }
         close_packed();
+        draw_large_triangle(r, left, top, right, bottom);
+    }
 
+    // Part by part, a block per lane; then block by block, a pixel per lane.
+    void draw_large_triangle(const TriangleRecord& r, int left, int top, int right, int bottom) {
         // Edge functions at the tile's first pixel, in whole pixels: adding a multiple of `subpixels` to a value keeps its
         // sign as long as the value is rounded down, so the low bits can go, and what matters within a tile fits 32 bits.
-        edge_count_ = 0;
+        TileEdge edges[3];
+        int edge_count = 0;
         for (int k = 0; k < 3; ++k) {
-            const Edge e = edge_at(r, k, left_, top_);
-            const std::int64_t value = e.value >> subpixel_bits;
-            const std::int64_t lowest = value + std::min<std::int64_t>(0, std::int64_t{e.step_x} * (tile_size - 1)) + std::min<std::int64_t>(0, std::int64_t{e.step_y} * (tile_size - 1));
-            const std::int64_t highest = value + std::max<std::int64_t>(0, std::int64_t{e.step_x} * (tile_size - 1)) + std::max<std::int64_t>(0, std::int64_t{e.step_y} * (tile_size - 1));
-            if (highest < 0) return;
-            if (lowest >= 0) continue;  // the whole tile is inside this edge
-            edges_[edge_count_++] = {static_cast<std::int32_t>(value), e.step_x, e.step_y, lane_x_ * e.step_x + lane_y_ * e.step_y};
+            const Edge e = edge_at(r, k, tile_left_, tile_top_);
+            const std::int64_t value = e.value >> subpixel_bits, across = std::int64_t{e.step_x} * (tile_size - 1), down = std::int64_t{e.step_y} * (tile_size - 1);
+            if (value + std::max<std::int64_t>(0, across) + std::max<std::int64_t>(0, down) < 0) return;
+            if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;  // the whole tile is inside this edge
+            const std::int32_t block_across = e.step_x * (block_width - 1), block_down = e.step_y * (block_height - 1);
+            edges[edge_count++] = {static_cast<std::int32_t>(value),
+                                   e.step_x,
+                                   e.step_y,
+                                   std::max(0, block_across) + std::max(0, block_down),
+                                   std::min(0, block_across) + std::min(0, block_down),
+                                   lane_x_ * e.step_x + lane_y_ * e.step_y,
+                                   lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
         }
+        for (int y = top & -part_height; y <= bottom; y += part_height) {
+            for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, edges, edge_count, x, y);
+        }
+        close_pending(r);
+    }
 
-        constexpr int part = 16;  // the tile is looked at in parts of 16 x 16 pixels first
-        if (right - left < part && bottom - top < part) return draw_blocks(record, left, top, right, bottom);
-        for (int y = top / part * part; y <= bottom; y += part) {
-            for (int x = left / part * part; x <= right; x += part) {
-                bool touched = true;
-                for (int k = 0; k < edge_count_ && touched; ++k) {
-                    const TileEdge& e = edges_[k];
-                    const std::int32_t at = e.value + (x - left_) * e.step_x + (y - top_) * e.step_y;
-                    touched = at + std::max(0, (part - 1) * e.step_x) + std::max(0, (part - 1) * e.step_y) >= 0;
-                }
-                if (touched) draw_blocks(record, std::max(x, left), std::max(y, top), std::min(x + part - 1, right), std::min(y + part - 1, bottom));
+    struct TileEdge {
+        std::int32_t value, step_x, step_y;  // at the tile's first pixel; from pixel to pixel
+        std::int32_t highest, lowest;        // at any of a block's pixels, from its first one's value
+        I pixel_step, block_step;            // from a block's first pixel to each of its pixels; from a part's first block to each of its blocks
+    };
+
+    void draw_part(const TriangleRecord& r, const TileEdge* edges, int edge_count, int x, int y) {
+        alignas(64) std::int32_t block_value[3][lanes];
+        I outside(0), divided(0);  // negative if any edge's value is, everywhere or somewhere in a block
+        for (int k = 0; k < edge_count; ++k) {
+            const TileEdge& e = edges[k];
+            const I value = e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
+            store_lanes(block_value[k], value);
+            outside = outside | (value + e.highest);
+            divided = divided | (value + e.lowest);
+        }
+        std::uint32_t touched = mask_bits(outside >= I(0));
+        if (!touched) return;
+        std::uint32_t covered = mask_bits(divided >= I(0));
+        // Where the part reaches out of what may be drawn its blocks are cut, or left out.
+        const bool cut = x < left_ || y < top_ || x + part_width - 1 > right_ || y + part_height - 1 > bottom_;
+        if (cut) {
+            const I bx = I(x) + lane_x_ * block_width, by = I(y) + lane_y_ * block_height, end_x = bx + (block_width - 1), end_y = by + (block_height - 1);
+            touched &= mask_bits((end_x >= I(left_)) & (bx <= I(right_)) & (end_y >= I(top_)) & (by <= I(bottom_)));
+            covered &= mask_bits((bx >= I(left_)) & (end_x <= I(right_)) & (by >= I(top_)) & (end_y <= I(bottom_)));
+        }
+        for (; touched; touched &= touched - 1) {
+            const int block = __builtin_ctz(touched), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
+            if (covered >> block & 1u) {
+                add_block(r, bx, by, all_lanes_);
+                continue;
             }
+            I outside_pixel(0);
+            for (int k = 0; k < edge_count; ++k) outside_pixel = outside_pixel | (edges[k].pixel_step + I(block_value[k][block]));
+            M inside = outside_pixel >= I(0);
+            if (cut) inside = inside & (lane_x_ >= I(left_ - bx)) & (lane_x_ <= I(right_ - bx)) & (lane_y_ >= I(top_ - by)) & (lane_y_ <= I(bottom_ - by));
+            const std::uint32_t mask = mask_bits(inside);
+            if (!mask) continue;
+            if (draw_.early_depth) add_block(r, bx, by, mask);
+            else add_pending(r, bx, by, mask);
         }
     }
 
-    // All blocks that a rectangle inside the tile touches. Blocks lie on a grid of their own size.
-    void draw_blocks(std::uint32_t record, int left, int top, int right, int bottom) {
-        for (int y = top & -block_height; y <= bottom; y += block_height) {
-            for (int x = left & -block_width; x <= right; x += block_width) {
-                I outside(0);
-                for (int k = 0; k < edge_count_; ++k) {
-                    const TileEdge& e = edges_[k];
-                    outside = outside | (e.lane_step + I(e.value + (x - left_) * e.step_x + (y - top_) * e.step_y));
-                }
-                M inside = outside >= I(0);
-                if (lanes > 1 && (x < left || y < top || x + block_width - 1 > right || y + block_height - 1 > bottom))
-                    inside = inside & (lane_x_ >= I(left - x)) & (lane_x_ <= I(right - x)) & (lane_y_ >= I(top - y)) & (lane_y_ <= I(bottom - y));
-                const std::uint32_t mask = mask_bits(inside);
-                if (mask) add_block(triangle(record), x, y, mask);
-            }
-        }
-    }
-
+    // A block of one triangle, in rows of four.
     void add_block(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
+        Group& g = groups_[count_];
+        g.rows_of_four = whole_rows(x, y);
+        g.run_width = block_width;
+        g.run_start = 0;
+        add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
+    }
+
+    // Fragments of blocks that the triangle covers in part wait until they fill a group: no pixel is covered twice, so their
+    // order does not matter.
+    void add_pending(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
+        pending_ += compress_lanes(pending_x_ + pending_, I(x) + lane_x_, mask);
+        compress_lanes(pending_y_ + (pending_ - __builtin_popcount(mask)), I(y) + lane_y_, mask);
+        if (pending_ < lanes) return;
+        add_loose_group(r, ~0u);
+        pending_ -= lanes;
+        store_lanes(pending_x_, load_lanes<I>(pending_x_ + lanes));
+        store_lanes(pending_y_, load_lanes<I>(pending_y_ + lanes));
+    }
+    void close_pending(const TriangleRecord& r) {
+        if (pending_ == 0) return;
+        // Idle lanes stand on the first fragment's pixel.
+        const M used = first_lanes<F>(pending_);
+        store_lanes(pending_x_, select(used, load_lanes<I>(pending_x_), I(pending_x_[0])));
+        store_lanes(pending_y_, select(used, load_lanes<I>(pending_y_), I(pending_y_[0])));
+        add_loose_group(r, mask_bits(used));
+        pending_ = 0;
+    }
+    void add_loose_group(const TriangleRecord& r, std::uint32_t mask) {
+        Group& g = groups_[count_];
+        g.rows_of_four = false;
+        g.run_width = g.run_start = 0;
+        add_triangle_group(r, load_lanes<I>(pending_x_), load_lanes<I>(pending_y_), mask & all_lanes_);
+    }
+
+    void add_triangle_group(const TriangleRecord& r, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.uniform = true;
         g.constant = false;
-        g.rows_of_four = whole_rows(x, y);
-        const I px = I(x) + lane_x_, py = I(y) + lane_y_;
         store_lanes(g.x, px);
         store_lanes(g.y, py);
         weigh(g, px, py, {F(r.origin_x), F(r.origin_y)}, {F(r.b1_dx), F(r.b1_dy), F(r.b2_dx), F(r.b2_dy)}, {F(r.z0), F(r.z1), F(r.z2)},
@@ -190,42 +255,56 @@ private:
         const int left = std::max(r.left, left_), top = std::max(r.top, top_), right = std::min(r.right - 1, right_), bottom = std::min(r.bottom - 1, bottom_);
         if (left > right || top > bottom) return;
         const int width = right - left + 1, height = bottom - top + 1;
-        constexpr int few = 4, narrow = 8;
+        constexpr int few = 4, narrow = 16;
         if (lanes == 1 || width * height <= few) {
             for (int y = top; y <= bottom; ++y)
                 for (int x = left; x <= right; ++x) push(x, y, record);
             return;
         }
         close_packed();
-        if (width <= narrow && height <= narrow) {
-            // Row after row without gaps.
-            int x = left, y = top;
-            for (int remaining = width * height; remaining > 0; remaining -= lanes) {
-                alignas(64) std::int32_t px[lanes], py[lanes];
-                for (int l = 0; l < lanes; ++l) {
-                    px[l] = x;
-                    py[l] = y;
-                    if (++x > right && y < bottom) x = left, ++y;
-                }
-                add_splat(r, load_lanes<I>(px), load_lanes<I>(py), false, mask_bits(first_lanes<F>(remaining)));
-            }
-            return;
+        if (width <= narrow && height <= narrow) draw_dense_point(r, left, top, width, height);
+        else draw_point_blocks(r, left, top, right, bottom);
+    }
+
+    // Row after row without gaps, from group to group.
+    void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
+        const I row = to_int_in_range((to_float(lane_index<F>()) + F(0.5f)) * F(1.0f / static_cast<float>(width)));  // floor(lane / width): exact for small numbers
+        I x = lane_index<F>() - row * width, y = row;
+        const int rows_on = lanes / width, columns_on = lanes % width;
+        int start = 0;
+        for (int remaining = width * height; remaining > 0; remaining -= lanes) {
+            Group& g = groups_[count_];
+            g.rows_of_four = false;
+            g.run_width = width;
+            g.run_start = start;
+            add_splat(r, I(left) + x, I(top) + y, mask_bits(first_lanes<F>(remaining)));
+            x = x + columns_on;
+            const M next_row = x >= width;
+            x = select(next_row, x - width, x);
+            y = y + rows_on + select(next_row, I(1), I(0));
+            start = start + columns_on >= width ? start + columns_on - width : start + columns_on;
         }
+    }
+
+    void draw_point_blocks(const PointRecord& r, int left, int top, int right, int bottom) {
         for (int y = top & -block_height; y <= bottom; y += block_height) {
             for (int x = left & -block_width; x <= right; x += block_width) {
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
-                add_splat(r, px, py, whole_rows(x, y), mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
+                Group& g = groups_[count_];
+                g.rows_of_four = whole_rows(x, y);
+                g.run_width = block_width;
+                g.run_start = 0;
+                add_splat(r, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
     }
 
-    void add_splat(const PointRecord& r, I px, I py, bool rows_of_four, std::uint32_t mask) {
+    void add_splat(const PointRecord& r, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.uniform = g.constant = true;
-        g.rows_of_four = rows_of_four;
         store_lanes(g.x, px);
         store_lanes(g.y, py);
-        place_in_point(g, px, py, F(r.x), F(r.y), F(r.size), F(r.z), F(r.w));
+        place_in_point(g, px, py, F(r.x), F(r.y), F(1.0f / r.size), F(r.z), F(r.w));
         if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
@@ -237,14 +316,14 @@ private:
     }
 
     // A point's values are its vertex's: no weights. Its depth is that of its centre.
-    void place_in_point(Group& g, I px, I py, F x, F y, F size, F z, F w) {
+    void place_in_point(Group& g, I px, I py, F x, F y, F inverse_size, F z, F w) {
         if (draw_.needs_smooth) store_lanes(g.b1, F(0.0f)), store_lanes(g.b2, F(0.0f));
         if (draw_.needs_linear) store_lanes(g.l1, F(0.0f)), store_lanes(g.l2, F(0.0f));
         if (!draw_.needs_z_w) return;
         store_lanes(g.z, clamp_depth(z));
         store_lanes(g.w, w);
-        store_lanes(g.point_x, (to_float(px) + 0.5f - x) / size + 0.5f);
-        store_lanes(g.point_y, (to_float(py) + 0.5f - y) / size + 0.5f);
+        store_lanes(g.point_x, (to_float(px) + 0.5f - x) * inverse_size + 0.5f);
+        store_lanes(g.point_y, (to_float(py) + 0.5f - y) * inverse_size + 0.5f);
     }
 
     // ---- lines, by Direct3D's diamond-exit rule
@@ -299,6 +378,7 @@ private:
         g.uniform = true;
         g.constant = false;
         g.rows_of_four = false;
+        g.run_width = g.run_start = 0;
         const float length = static_cast<float>(steep ? r.y[1] - r.y[0] : r.x[1] - r.x[0]);
         const float way = static_cast<float>((steep ? y : x) * subpixels + subpixels / 2 - (steep ? r.y[0] : r.x[0]));
         const float t = min(max(way / length, 0.0f), 1.0f);
@@ -343,6 +423,7 @@ private:
         g.uniform = false;
         g.constant = draw_.raster_topology == Topology::PointList;
         g.rows_of_four = false;
+        g.run_width = g.run_start = 0;
         const I record = load_lanes<I>(packed_record_), px = load_lanes<I>(g.x), py = load_lanes<I>(g.y);
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);
         const auto store_word = [](std::uint32_t* to, F word) { store_lanes(to, float_bits(word)); };
@@ -366,7 +447,7 @@ private:
             gather4(words + 8, at, b);
             if (draw_.needs_smooth || draw_.needs_linear || draw_.needs_z_w) {
                 gather4(words + 4, at, a);
-                place_in_point(g, px, py, a[0], a[1], a[2], a[3], b[0]);
+                place_in_point(g, px, py, a[0], a[1], F(1.0f) / a[2], a[3], b[0]);
             }
             if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
             if (!mask) return;
@@ -409,23 +490,20 @@ private:
         }
     }
 
-    struct TileEdge {
-        std::int32_t value, step_x, step_y;
-        I lane_step;
-    };
-
     const DrawContext& draw_;
     const RasterTarget& target_;
     int target_index_;
     TileScratch& scratch_;
     Group* groups_;
     int count_ = 0, packed_ = 0;
+    int tile_left_, tile_top_;
     int left_, top_, right_, bottom_;  // of the tile, cut to what may be drawn, right and bottom included
     I lane_x_, lane_y_;                // a lane's place in a block
     int result_stride_;
-    int edge_count_ = 0;
-    TileEdge edges_[3];
     alignas(64) std::int32_t packed_record_[lanes];
+    // Pixels of the current triangle that wait for a group.
+    int pending_ = 0;
+    alignas(64) std::int32_t pending_x_[2 * lanes], pending_y_[2 * lanes];
 };
 
 template <class F>

@@ -82,6 +82,12 @@ inline void store_lanes(T* memory, Lanes<T, 16> value, Mask<16> mask) {
     _mm512_mask_storeu_epi32(memory, mask.m, (__m512i)value.v);
 }
 
+// The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
+inline int compress_lanes(std::int32_t* memory, IntLanes<16> value, std::uint32_t mask) {
+    _mm512_storeu_si512(memory, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), avx512::si(value)));
+    return __builtin_popcount(mask);
+}
+
 namespace avx512 {
 // Transposes each of the four 4x4 blocks that a, b, c, d hold in their 128-bit parts.
 inline void transpose_quads(__m512& a, __m512& b, __m512& c, __m512& d) {

@@ -39,8 +39,11 @@ macro(_nephroid_isa_settings)
   set(NEPHROID_ISA_FLAGS_sse42 -msse4.2)
   set(NEPHROID_ISA_FLAGS_avx2 -mavx2 -mf16c -mtune=haswell)
   set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mtune=skylake-avx512)
+  # Structs of lanes are copied a whole register at a time: what is stored in halves cannot be loaded whole without a wait.
   # GCC 12 takes the deliberately undefined operand inside its own AVX-512 intrinsics for a mistake of ours.
-  set(NEPHROID_ISA_FLAGS_GNU_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+  set(NEPHROID_ISA_FLAGS_GNU_avx2 -mmove-max=256 -mstore-max=256)
+  set(NEPHROID_ISA_FLAGS_GNU_avx512 -mprefer-vector-width=512 -mmove-max=512 -mstore-max=512 -Wno-uninitialized -Wno-maybe-uninitialized)
+  set(NEPHROID_ISA_FLAGS_Clang_avx512 -mprefer-vector-width=512)
 endmacro()
 
 # A target with the kernels' compile flags and its own usage requirements, for one instruction set.
@@ -53,7 +56,7 @@ function(_nephroid_kernel_objects target isa out)
   target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
   # GCC marks inline variables, which an unoptimised build keeps, as unique in the whole program: those cannot be made local.
   target_compile_options(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${NEPHROID_ISA_FLAGS_${isa}}
-    "$<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique;${NEPHROID_ISA_FLAGS_GNU_${isa}}>")
+    "$<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique;${NEPHROID_ISA_FLAGS_GNU_${isa}}>" "$<$<CXX_COMPILER_ID:Clang>:${NEPHROID_ISA_FLAGS_Clang_${isa}}>")
   target_link_libraries(${objects} PRIVATE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
   set_target_properties(${objects} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   set(${out} ${objects} PARENT_SCOPE)

@@ -281,7 +281,7 @@ void clip_and_set_up_triangle(const DrawContext& draw, Batch& batch, int primiti
         while (screen[a].inverse_w > screen[b].inverse_w || screen[a].inverse_w > screen[c].inverse_w) std::tie(a, b, c) = std::tuple(b, c, a);
         const ScreenVertex corners[3] = {screen[a], screen[b], screen[c]};
         const std::uint32_t vertices[3] = {batch.first_vertex + polygon[a].vertex, batch.first_vertex + polygon[b].vertex, batch.first_vertex + polygon[c].vertex};
-        set_up_triangle(draw, batch, corners, vertices, batch.first_vertex + leading, batch.primitives.primitive_id[primitive], target_index);
+        set_up_triangle(draw, batch, corners, vertices, batch.first_vertex + leading, id_of(batch.primitives, primitive), target_index);
     });
 }
 
@@ -334,7 +334,7 @@ void clip_and_set_up_line(const DrawContext& draw, Batch& batch, int primitive) 
         return;
     }
     r.leading = batch.first_vertex + leading;
-    r.primitive_id = batch.primitives.primitive_id[primitive];
+    r.primitive_id = id_of(batch.primitives, primitive);
     r.target = target_index;
     // A position on the border between two pixels may be the first one's (rasterizer.hpp).
     r.left = std::max((std::min(r.x[0], r.x[1]) - 1) >> subpixel_bits, target.clip.left);

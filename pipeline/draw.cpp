@@ -255,17 +255,20 @@ void run_front_end(const DrawContext& draw, std::int64_t first_primitive, int co
     assemble_batch(draw, first_primitive, count, batch);
 
     batch.statistics.vs_invocations = static_cast<unsigned>(batch.vertex_count);
-    draw.kernels->shade_vertices({draw.program.vertex_shader, draw.vertex_buffer, batch.vertex_ids, batch.vertex_instances, batch.vertex_count, batch.shaded});
+    draw.kernels->shade_vertices({draw.program.vertex_shader, draw.vertex_buffer, batch.numbered ? nullptr : batch.vertex_ids, batch.numbered ? nullptr : batch.vertex_instances,
+                                  batch.first_vertex_id, batch.instance_id, batch.vertex_count, batch.shaded});
 
     if (t.has_geometry) {
         GeometryWork work{};
         work.shader = draw.program.geometry_shader;
         work.records = batch.shaded.records;
         work.in = batch.assembled;
-        work.instance_ids = batch.primitive_instances;
+        work.instance_ids = batch.numbered ? nullptr : batch.primitive_instances;
+        work.instance_id = batch.instance_id;
         for (int s = 0; s < t.stream_count; ++s) {
             batch.stream[s].vertex_count = 0;
             batch.stream[s].primitives.count = 0;
+            batch.stream[s].primitives.in_order = vertices_per_primitive(t.geometry_output) == 1;
             work.stream[s] = batch.stream[s];
         }
         draw.kernels->shade_primitives(work);
@@ -281,7 +284,7 @@ void run_front_end(const DrawContext& draw, std::int64_t first_primitive, int co
         // The lanes of the last group need something to look at.
         PrimitiveArrays& p = batch.primitives;
         for (int i = p.count; p.count > 0 && i < padded(p.count); ++i) {
-            for (int c = 0; c < vertices_per_primitive(draw.raster_topology); ++c) p.corner[c][i] = p.corner[c][p.count - 1];
+            for (int c = 0; c < vertices_per_primitive(draw.raster_topology) && !p.in_order; ++c) p.corner[c][i] = p.corner[c][p.count - 1];
             p.primitive_id[i] = p.primitive_id[p.count - 1];
         }
     } else {

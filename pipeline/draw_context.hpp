@@ -17,7 +17,8 @@
 namespace nephroid {
 
 inline constexpr int vertex_table_size = 4096;  // entries of the table that finds a batch's shared vertices
-inline constexpr int tile_size = 64;       // pixels along an edge
+inline constexpr int tile_bits = 6;
+inline constexpr int tile_size = 1 << tile_bits;  // pixels along an edge
 inline constexpr int subpixel_bits = 8;    // vertices are snapped to 1/256 pixel
 inline constexpr int subpixels = 1 << subpixel_bits;
 // Screen positions beyond the largest target by this much are clipped; edges then fit 23 bits of subpixels, and edge
@@ -106,6 +107,9 @@ struct Batch {
     std::uint32_t* vertex_instances;
     std::uint32_t* hash;  // vertex id to place in vertex_ids while assembling
     int vertex_count;
+    // Vertices of one instance whose ids count up from first_vertex_id: nothing is written to the arrays of ids.
+    bool numbered;
+    std::uint32_t first_vertex_id, instance_id;
     PrimitiveArrays assembled;
     std::uint32_t* primitive_instances;
     VertexArrays shaded;

@@ -15,6 +15,14 @@ template <int N>
 inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const std::uint32_t* cut, int emissions, const std::int32_t* first,
                              const std::uint32_t* primitive_id, int active, PrimitiveArrays& out) {
     const int corners = vertices_per_primitive(topology);
+    if (out.in_order) {
+        for (int l = 0; l < active; ++l)
+            for (int e = 0; e < emissions; ++e) {
+                out.primitive_id[out.count] = primitive_id[l];
+                out.count += static_cast<int>(mask[e] >> l & 1u);
+            }
+        return;
+    }
     for (int l = 0; l < active; ++l) {
         std::uint32_t vertex = static_cast<std::uint32_t>(first[l]), strip = vertex;
         for (int e = 0; e < emissions; ++e) {
@@ -39,6 +47,24 @@ inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const
     }
 }
 
+// Calls put(array, lanes) with each value of a vertex that the fixed-function stages keep an array of.
+template <class V, class Put>
+[[gnu::always_inline]] inline void for_each_system_value(const VertexArrays& arrays, const V& v, const Put& put) {
+    if constexpr (requires { v.position; }) {
+        if (arrays.position[0])
+            for (int c = 0; c < 4; ++c) put(arrays.position[c], v.position[c]);
+    }
+    if constexpr (requires { v.point_size; }) {
+        if (arrays.point_size) put(arrays.point_size, v.point_size);
+    }
+    if constexpr (requires { v.layer; }) {
+        if (arrays.layer) put(arrays.layer, v.layer);
+    }
+    if constexpr (requires { v.level; }) {
+        if (arrays.level) put(arrays.level, v.level);
+    }
+}
+
 template <class F, class V, int MaxVertices>
 inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>& emitted, const std::uint32_t* primitive_id, int active,
                              GeometryStreamWork& stream) {
@@ -47,6 +73,7 @@ inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>&
     std::uint32_t mask[MaxVertices];
     std::int32_t first[lanes], place[lanes];
     for (int e = 0; e < emitted.count; ++e) mask[e] = emitted.mask[e] & active_bits;
+    const int first_of_all = stream.vertex_count;
     for (int l = 0; l < lanes; ++l) {
         first[l] = stream.vertex_count;
         for (int e = 0; e < emitted.count; ++e) stream.vertex_count += mask[e] >> l & 1u;
@@ -58,22 +85,16 @@ inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>&
         for (int l = 0; l < lanes; ++l) offset[l] = (mask[e] >> l & 1u ? place[l] : stream.junk_vertex) * component_count<V>;
         const V& v = emitted.vertex[e];
         if (stream.out.records) store_records(stream.out.records, offset, v);
-        for (std::uint32_t bits = mask[e]; bits; bits &= bits - 1) {
-            const int l = __builtin_ctz(bits), at = place[l]++;
-            if constexpr (requires { v.position; }) {
-                if (stream.out.position[0])
-                    for (int c = 0; c < 4; ++c) stream.out.position[c][at] = lane(v.position[c], l);
+        for_each_system_value(stream.out, v, [&]<class T>(T* array, const auto& value) {
+            if constexpr (MaxVertices == 1) {  // side by side
+                compress_lanes(array + first_of_all, value, mask[e]);
+            } else {
+                alignas(64) T all[lanes];
+                store_lanes(all, value);
+                for (std::uint32_t bits = mask[e]; bits; bits &= bits - 1) array[place[__builtin_ctz(bits)]] = all[__builtin_ctz(bits)];
             }
-            if constexpr (requires { v.point_size; }) {
-                if (stream.out.point_size) stream.out.point_size[at] = lane(v.point_size, l);
-            }
-            if constexpr (requires { v.layer; }) {
-                if (stream.out.layer) stream.out.layer[at] = lane(v.layer, l);
-            }
-            if constexpr (requires { v.level; }) {
-                if (stream.out.level) stream.out.level[at] = lane(v.level, l);
-            }
-        }
+        });
+        for (int l = 0; l < lanes; ++l) place[l] += static_cast<int>(mask[e] >> l & 1u);
     }
     assemble_emitted<lanes>(topology, mask, emitted.cut, emitted.count, first, primitive_id, active, stream.primitives);
 }
@@ -90,17 +111,22 @@ void shade_primitives(GeometryWork& work) {
         std::tuple<Emissions<typename Out::template Vertex<s>, max_vertices>...> emissions;
         for (int i = 0; i < work.in.count; i += lanes) {
             const int active = work.in.count - i < lanes ? work.in.count - i : lanes;
+            const PrimitiveArrays& from = work.in;
             typename Types::Input in;
-            for (std::size_t c = 0; c < in.size(); ++c) in[c] = gather_records<In>(work.records, load_lanes<LaneInt<F>>(work.in.corner[c] + i));
+            for (std::size_t c = 0; c < in.size(); ++c)
+                in[c] = gather_records<In>(work.records, from.in_order ? as_int(count_up<F>(0, i, from.count)) : load_lanes<LaneInt<F>>(from.corner[c] + i));
+            const LaneUint<F> primitive_id = from.numbered ? count_up<F>(from.first_id, i, from.count) : load_lanes<LaneUint<F>>(from.primitive_id + i);
+            alignas(64) std::uint32_t primitive_ids[lanes];
+            store_lanes(primitive_ids, primitive_id);
             ((std::get<s>(emissions).count = 0), ...);
             Out out(std::get<s>(emissions)...);
             if constexpr (Types::takes_ids) {
-                const PrimitiveIds<F> ids{load_lanes<LaneUint<F>>(work.in.primitive_id + i), load_lanes<LaneUint<F>>(work.instance_ids + i)};
+                const PrimitiveIds<F> ids{primitive_id, work.instance_ids ? load_lanes<LaneUint<F>>(work.instance_ids + i) : LaneUint<F>(work.instance_id)};
                 shader.template operator()<F>(in, out, ids);
             } else {
                 shader.template operator()<F>(in, out);
             }
-            (append_emissions<F>(GS::output, std::get<s>(emissions), work.in.primitive_id + i, active, work.stream[s]), ...);
+            (append_emissions<F>(GS::output, std::get<s>(emissions), primitive_ids, active, work.stream[s]), ...);
         }
     }
     (std::make_integer_sequence<int, streams>{});

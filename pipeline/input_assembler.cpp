@@ -62,43 +62,40 @@ void assemble_batch(const DrawContext& draw, std::int64_t first_primitive, int c
     std::uint32_t instance = static_cast<std::uint32_t>(first_primitive / draw.primitives_per_instance);
     std::int64_t in_instance = first_primitive % draw.primitives_per_instance;
 
-    if (!shared && in_instance + count <= draw.primitives_per_instance) {
-        // All different, one instance: numbers in a row.
+    batch.numbered = !shared && in_instance + count <= draw.primitives_per_instance;
+    out.in_order = batch.numbered && corners == 1;
+    out.numbered = batch.numbered;
+    if (batch.numbered) {
+        // All different, one instance.
         batch.vertex_count = count * corners;
-        const std::uint32_t first_id = static_cast<std::uint32_t>(in_instance) * static_cast<std::uint32_t>(corners);
-        for (int i = 0; i < padded(batch.vertex_count); ++i) {
-            batch.vertex_ids[i] = first_id + static_cast<std::uint32_t>(std::min(i, batch.vertex_count - 1));
-            batch.vertex_instances[i] = instance;
-        }
-        for (int c = 0; c < corners; ++c)
+        batch.first_vertex_id = static_cast<std::uint32_t>(in_instance) * static_cast<std::uint32_t>(corners);
+        batch.instance_id = instance + draw.first_instance;
+        out.first_id = static_cast<std::uint32_t>(in_instance);
+        for (int c = 0; c < corners && !out.in_order; ++c)
             for (int i = 0; i < padded(count); ++i) out.corner[c][i] = static_cast<std::uint32_t>(std::min(i, count - 1) * corners + c);
-        for (int i = 0; i < padded(count); ++i) {
-            out.primitive_id[i] = static_cast<std::uint32_t>(in_instance) + static_cast<std::uint32_t>(std::min(i, count - 1));
-            batch.primitive_instances[i] = instance;
+        return;
+    }
+    VertexTable table(batch);
+    for (int i = 0; i < count; ++i) {
+        std::uint32_t ids[3];
+        vertices_of(draw, static_cast<std::uint32_t>(in_instance), ids);
+        for (int c = 0; c < corners; ++c) out.corner[c][i] = shared ? table.place_of(ids[c], instance) : table.append(ids[c], instance);
+        out.primitive_id[i] = static_cast<std::uint32_t>(in_instance);
+        batch.primitive_instances[i] = instance;
+        if (++in_instance == draw.primitives_per_instance) {
+            in_instance = 0;
+            ++instance;
+            if (shared) table.forget();
         }
-    } else {
-        VertexTable table(batch);
-        for (int i = 0; i < count; ++i) {
-            std::uint32_t ids[3];
-            vertices_of(draw, static_cast<std::uint32_t>(in_instance), ids);
-            for (int c = 0; c < corners; ++c) out.corner[c][i] = shared ? table.place_of(ids[c], instance) : table.append(ids[c], instance);
-            out.primitive_id[i] = static_cast<std::uint32_t>(in_instance);
-            batch.primitive_instances[i] = instance;
-            if (++in_instance == draw.primitives_per_instance) {
-                in_instance = 0;
-                ++instance;
-                if (shared) table.forget();
-            }
-        }
-        for (int i = batch.vertex_count; i < padded(batch.vertex_count); ++i) {
-            batch.vertex_ids[i] = batch.vertex_ids[batch.vertex_count - 1];
-            batch.vertex_instances[i] = batch.vertex_instances[batch.vertex_count - 1];
-        }
-        for (int i = count; i < padded(count); ++i) {
-            for (int c = 0; c < corners; ++c) out.corner[c][i] = out.corner[c][count - 1];
-            out.primitive_id[i] = out.primitive_id[count - 1];
-            batch.primitive_instances[i] = batch.primitive_instances[count - 1];
-        }
+    }
+    for (int i = batch.vertex_count; i < padded(batch.vertex_count); ++i) {
+        batch.vertex_ids[i] = batch.vertex_ids[batch.vertex_count - 1];
+        batch.vertex_instances[i] = batch.vertex_instances[batch.vertex_count - 1];
+    }
+    for (int i = count; i < padded(count); ++i) {
+        for (int c = 0; c < corners; ++c) out.corner[c][i] = out.corner[c][count - 1];
+        out.primitive_id[i] = out.primitive_id[count - 1];
+        batch.primitive_instances[i] = batch.primitive_instances[count - 1];
     }
     if (draw.first_instance) {
         for (int i = 0; i < padded(batch.vertex_count); ++i) batch.vertex_instances[i] += draw.first_instance;

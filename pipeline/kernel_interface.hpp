@@ -29,8 +29,9 @@ struct VertexArrays {
 struct VertexWork {
     const void* shader;
     const std::byte* vertex_buffer;     // null where the shader takes no vertex
-    const std::uint32_t* vertex_ids;    // [padded(count)]
-    const std::uint32_t* instance_ids;  // [padded(count)]
+    const std::uint32_t* vertex_ids;    // [padded(count)]; null: first_vertex_id, and so on
+    const std::uint32_t* instance_ids;  // [padded(count)]; null where vertex_ids is: first_instance_id for all
+    std::uint32_t first_vertex_id, first_instance_id;
     int count;
     VertexArrays out;  // room for padded(count)
 };
@@ -40,7 +41,11 @@ struct PrimitiveArrays {
     std::uint32_t* corner[3] = {};
     std::uint32_t* primitive_id = nullptr;  // of the input assembler
     int count = 0;
+    bool in_order = false;  // points, of which each has the vertex of its own number: there is nothing in `corner`
+    bool numbered = false;  // their ids are first_id, first_id + 1, ...: there is nothing in `primitive_id`
+    std::uint32_t first_id = 0;
 };
+inline std::uint32_t id_of(const PrimitiveArrays& p, int primitive) { return p.numbered ? p.first_id + static_cast<unsigned>(primitive) : p.primitive_id[primitive]; }
 
 struct GeometryStreamWork {
     VertexArrays out;            // room for max_vertices vertices per primitive, and one
@@ -54,7 +59,8 @@ struct GeometryWork {
     const void* shader;
     const std::byte* records;   // of the vertex stage
     PrimitiveArrays in;         // arrays valid up to padded(count)
-    const std::uint32_t* instance_ids;  // per primitive, [padded(count)]
+    const std::uint32_t* instance_ids;  // per primitive, [padded(count)]; null where `in` is numbered: instance_id for all
+    std::uint32_t instance_id;
     GeometryStreamWork stream[max_streams];
 };
 
@@ -85,7 +91,7 @@ struct alignas(64) FragmentGroup {
 };
 
 // How many groups are shaded at a time: enough to hide the calls, few enough to stay in the first-level cache.
-inline constexpr int groups_per_flush = 8;
+inline constexpr int groups_per_flush = 16;
 
 // One run of the pixel stage. Results of group g begin at results + g * result_stride; in them the colour of target t,
 // channel c is at [(t * 4 + c) * lanes], the depth, where written, after the last colour.

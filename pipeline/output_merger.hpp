@@ -111,11 +111,14 @@ inline void merge_texel(const ColorTarget& how, std::byte* at, const float* sour
     store_texel<format>(at, color);
 }
 
-// Neighbours in a row. Where a texel is what a colour is, one operation serves as many as fit into a register.
+// Neighbours in a row. Where a texel is what a colour is, one operation serves as many as fit into a register: not, though,
+// where texels are read that a primitive before may have written in other portions, since a load that takes parts of
+// several stores waits until those have reached the cache.
 template <class F, Format format, MergeMode mode>
-inline void merge_run(const ColorTarget& how, std::byte* at, const float* source, int count) {
+inline void merge_run(const ColorTarget& how, std::byte* at, const float* source, int count, bool aligned) {
     constexpr int lanes = lanes_of<F>;
     if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4) {
+        if (mode == MergeMode::Opaque || aligned)
         for (; count >= lanes / 4; count -= lanes / 4, at += lanes * 4, source += lanes) {
             F color = load_lanes<F>(source);
             if constexpr (mode == MergeMode::Additive) color = color + load_lanes<F>(at);
@@ -136,7 +139,7 @@ inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t
             const int end = __builtin_popcount(mask);
             for (int l = 0, in_row = group.run_start; l < end; in_row = 0) {
                 const int count = std::min(run - in_row, end - l);
-                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, count);
+                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, count, group.rows_of_four);
                 l += count;
             }
             return;
@@ -144,7 +147,7 @@ inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t
         if (run == 4) {  // blocks that are not whole: their whole rows
             for (int l = 0; l < lanes; l += 4) {
                 if ((mask >> l & 15u) != 15u) continue;
-                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, 4);
+                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, 4, true);
                 mask &= ~(15u << l);
             }
         }

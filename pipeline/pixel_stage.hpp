@@ -40,6 +40,14 @@ struct CornerValues {
     VF first, to_second, to_third;
 };
 
+// Component by component, so that compilers keep components in registers.
+template <class T>
+[[gnu::always_inline]] inline void assign(T& out, const T& value) { out = value; }
+template <int L, class T>
+[[gnu::always_inline]] inline void assign(glm::vec<L, T, glm::defaultp>& out, const glm::vec<L, T, glm::defaultp>& value) {
+    for (int k = 0; k < L; ++k) out[k] = value[k];
+}
+
 // The same three vertices, or one vertex each, for all lanes.
 template <class F, class VF, class Vf>
 [[gnu::always_inline]] inline void load_corners(CornerValues<VF>& out, const FragmentGroup<lanes_of<F>>& group, const std::byte* records) {
@@ -58,16 +66,16 @@ template <class F, class VF, class Vf>
     } else {
         const VF leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
         if (group.constant) {
-            for_each_varying<VF, Vf>([&](auto wide, auto, auto) __attribute__((always_inline)) { out.first.*wide = leading.*wide; });
+            for_each_varying<VF, Vf>([&](auto wide, auto, auto) __attribute__((always_inline)) { assign(out.first.*wide, leading.*wide); });
             return;
         }
         const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
         const VF c = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[2]));
         for_each_varying<VF, Vf>([&](auto wide, auto, auto mode) __attribute__((always_inline)) {
             if constexpr (mode() == Interpolation::Flat) {
-                out.first.*wide = leading.*wide;
+                assign(out.first.*wide, leading.*wide);
             } else {
-                out.first.*wide = a.*wide;
+                assign(out.first.*wide, a.*wide);
                 out.to_second.*wide = b.*wide - a.*wide;
                 out.to_third.*wide = c.*wide - a.*wide;
             }
@@ -75,16 +83,23 @@ template <class F, class VF, class Vf>
     }
 }
 
+template <class T>
+[[gnu::always_inline]] inline void interpolate(T& out, const T& first, const T& to_second, const T& to_third, T b1, T b2) {
+    out = (first + to_second * b1) + to_third * b2;
+}
+template <int L, class T>
+[[gnu::always_inline]] inline void interpolate(glm::vec<L, T, glm::defaultp>& out, const glm::vec<L, T, glm::defaultp>& first, const glm::vec<L, T, glm::defaultp>& to_second,
+                                               const glm::vec<L, T, glm::defaultp>& to_third, T b1, T b2) {
+    for (int k = 0; k < L; ++k) interpolate(out[k], first[k], to_second[k], to_third[k], b1, b2);
+}
 template <class F, class VF, class Vf>
 [[gnu::always_inline]] inline VF interpolate(const CornerValues<VF>& corners, const FragmentGroup<lanes_of<F>>& group) {
     VF in{};
     for_each_varying<VF, Vf>([&]([[maybe_unused]] auto wide, auto, auto mode) __attribute__((always_inline)) {
-        in.*wide = corners.first.*wide;
-        if constexpr (mode() != Interpolation::Flat) {
-            constexpr bool smooth = mode() == Interpolation::Smooth;
-            if (!group.constant)
-                in.*wide = (corners.first.*wide + corners.to_second.*wide * load_lanes<F>(smooth ? group.b1 : group.l1)) + corners.to_third.*wide * load_lanes<F>(smooth ? group.b2 : group.l2);
-        }
+        constexpr bool smooth = mode() == Interpolation::Smooth;
+        if (mode() == Interpolation::Flat || group.constant) assign(in.*wide, corners.first.*wide);
+        else if constexpr (mode() != Interpolation::Flat)
+            interpolate(in.*wide, corners.first.*wide, corners.to_second.*wide, corners.to_third.*wide, load_lanes<F>(smooth ? group.b1 : group.l1), load_lanes<F>(smooth ? group.b2 : group.l2));
     });
     return in;
 }

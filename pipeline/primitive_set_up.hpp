@@ -5,6 +5,8 @@
 // What does not fit the fast case (a vertex to be clipped, a triangle of more than 127 pixels) goes one by one, in order,
 // to clipper.cpp and set_up.cpp. For the rest this computes what set_up.cpp computes, operation by operation, in 32 bits.
 #pragma once
+#include <algorithm>
+
 #include "pipeline/edges.hpp"
 #include "pipeline/weight_planes.hpp"
 
@@ -97,7 +99,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
                     screen[c] = {lane(x[c], l), lane(y[c], l), lane(z[c], l), lane(inverse_w[c], l)};
                     vertex[c] = batch.first_vertex + static_cast<std::uint32_t>(lane(corner[c], l));
                 }
-                set_up_triangle(draw, batch, screen, vertex, vertex[0], batch.primitives.primitive_id[first + l], lane(target_index, l));
+                set_up_triangle(draw, batch, screen, vertex, vertex[0], id_of(batch.primitives, first + l), lane(target_index, l));
             }
             continue;
         }
@@ -180,6 +182,8 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
             depth0 = z0 + load_lanes<F>(bias);
         }
 
+        const PrimitiveArrays& from = batch.primitives;
+        const I primitive_id = from.numbered ? lane_index<F>() + I(static_cast<std::int32_t>(from.first_id + static_cast<unsigned>(first))) : load_lanes<I>(from.primitive_id + first);
         // Write the records side by side, in order; lanes that are not drawn go to the place behind the last.
         std::int32_t offset[lanes];
         int at = batch.record_count;
@@ -191,7 +195,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
         store_rows4(words + 8, offset, planes.b1_dx, planes.b1_dy, planes.b2_dx, planes.b2_dy);
         store_rows4(words + 12, offset, depth0, depth1, depth2, inverse_w[0]);
         store_rows4(words + 16, offset, w1, w2, w(v0), w(v1));
-        store_rows4(words + 20, offset, w(v2), w(v0), w(load_lanes<I>(batch.primitives.primitive_id + first)), w(target_index));
+        store_rows4(words + 20, offset, w(v2), w(v0), w(primitive_id), w(target_index));
         store_rows4(words + 24, offset, w(select(front, I(1), I(0))), w(select(small, I(1), I(0))), bits_float(coverage), w(left));
         store_rows4(words + 28, offset, w(top), w(right), w(bottom), F(0.0f));
         for (; batch.record_count < at; ++batch.record_count) {
@@ -209,16 +213,19 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
     const VertexArrays& vertices = batch.vertices;
     const bool one_target = draw.target_layers * draw.target_levels == 1;
     PointRecord* records = reinterpret_cast<PointRecord*>(batch.records);
+    I lowest_tile(batch.first_tile), highest_tile(batch.last_tile);
 
     for (int first = 0; first < batch.primitives.count; first += lanes) {
         const M active = first_lanes<F>(batch.primitives.count - first);
-        const I vertex = load_lanes<I>(batch.primitives.corner[0] + first);
+        const PrimitiveArrays& from = batch.primitives;
+        const I vertex = from.in_order ? lane_index<F>() + first : load_lanes<I>(from.corner[0] + first);
+        const auto of_vertex = [&](const float* array) { return from.in_order ? load_lanes<F>(array + first) : gather(array, vertex); };
         M drawn = active;
         const I target_index = one_target && !vertices.layer && !vertices.level ? I(0) : lane_target<F>(draw, batch, vertex, drawn);
         const LaneViewport<F> viewport = one_target ? LaneViewport<F>{F(draw.targets->scale_x), F(draw.targets->offset_x), F(draw.targets->scale_y), F(draw.targets->offset_y)}
                                                     : lane_viewport<F>(draw, target_index);
-        const F clip_x = gather(vertices.position[0], vertex), clip_y = gather(vertices.position[1], vertex);
-        const F clip_z = gather(vertices.position[2], vertex), clip_w = gather(vertices.position[3], vertex);
+        const F clip_x = of_vertex(vertices.position[0]), clip_y = of_vertex(vertices.position[1]);
+        const F clip_z = of_vertex(vertices.position[2]), clip_w = of_vertex(vertices.position[3]);
         batch.statistics.c_invocations += static_cast<unsigned>(__builtin_popcount(mask_bits(active)));
         constexpr float largest = 0x1.fffffep127f;
         drawn = drawn & (abs(clip_x) <= largest) & (abs(clip_y) <= largest) & (abs(clip_z) <= largest) & (abs(clip_w) <= largest);
@@ -230,7 +237,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         const F inverse_w = F(1.0f) / clip_w;
         const F x = (clip_x * inverse_w) * viewport.scale_x + viewport.offset_x, y = (clip_y * inverse_w) * viewport.scale_y + viewport.offset_y;
         const F z = (clip_z * inverse_w) * draw.depth_scale + draw.depth_offset;
-        const F size = vertices.point_size ? gather(vertices.point_size, vertex) : F(draw.state.rasterizer.point_size);
+        const F size = vertices.point_size ? of_vertex(vertices.point_size) : F(draw.state.rasterizer.point_size);
         drawn = drawn & (abs(x) <= guard_high) & (abs(y) <= guard_high) & (size > 0.0f) & (inverse_w <= 0x1.fffffep127f);
 
         // Pixels whose centres lie in the square of side `size`, left and top edge included.
@@ -253,6 +260,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         const std::uint32_t drawn_bits = mask_bits(drawn);
         if (!drawn_bits) continue;
 
+        const I primitive_id = from.numbered ? lane_index<F>() + I(static_cast<std::int32_t>(from.first_id + static_cast<unsigned>(first))) : load_lanes<I>(from.primitive_id + first);
         std::int32_t offset[lanes];
         int at = batch.record_count;
         for (int l = 0; l < lanes; ++l) offset[l] = (drawn_bits >> l & 1u ? at++ : draw.record_capacity) * static_cast<int>(sizeof(PointRecord) / 4);
@@ -260,11 +268,32 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         const auto w = [](I value) { return as_word<F>(value); };
         store_rows4(words, offset, w(left), w(top), w(right), w(bottom));
         store_rows4(words + 4, offset, to_float(sx) * (1.0f / subpixels), to_float(sy) * (1.0f / subpixels), size, z);
-        store_rows4(words + 8, offset, clip_w, w(vertex + I(static_cast<std::int32_t>(batch.first_vertex))), w(load_lanes<I>(batch.primitives.primitive_id + first)), w(target_index));
+        store_rows4(words + 8, offset, clip_w, w(vertex + I(static_cast<std::int32_t>(batch.first_vertex))), w(primitive_id), w(target_index));
+        // Where every point lies in one tile, the tiles are noted in lanes.
+        const M one_tile = (((left ^ (right - 1)) | (top ^ (bottom - 1))) & -tile_size) == 0;
+        if (none(drawn & !one_tile) && batch.pair_count + lanes <= draw.pair_capacity) {
+            I first_tile(draw.targets->first_tile), tiles_x(draw.targets->tiles_x);
+            if (!one_target) {
+                const I target_word = target_index * static_cast<int>(sizeof(RasterTarget) / 4);
+                first_tile = gather(&draw.targets->first_tile, target_word), tiles_x = gather(&draw.targets->tiles_x, target_word);
+            }
+            const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
+            lowest_tile = select(drawn, min(tile, lowest_tile), lowest_tile);
+            highest_tile = select(drawn, max(tile, highest_tile), highest_tile);
+            compress_lanes(batch.pair_tile + batch.pair_count, as_uint(tile), drawn_bits);
+            store_lanes(batch.pair_record + batch.pair_count, as_uint(lane_index<F>() + batch.record_count));
+            batch.pair_count += at - batch.record_count;
+            batch.record_count = at;
+            continue;
+        }
         for (; batch.record_count < at; ++batch.record_count) {
             const PointRecord& r = records[batch.record_count];
             bin_record(draw, batch, batch.record_count, r.target, r.left, r.top, r.right - 1, r.bottom - 1);
         }
+    }
+    for (int l = 0; l < lanes; ++l) {
+        batch.first_tile = std::min(batch.first_tile, lane(lowest_tile, l));
+        batch.last_tile = std::max(batch.last_tile, lane(highest_tile, l));
     }
 }
 

@@ -40,6 +40,7 @@ public:
         lane_x_ = lane_number & (block_width - 1);
         lane_y_ = lane_number >> (block_width == 4 ? 2 : 0);
         if constexpr (lanes == 1) lane_y_ = I(0);
+        lane_xy_ = lane_x_ + lane_y_ * 0x10000;
         result_stride_ = (draw.color_count * 4 + (draw.program.traits->writes_depth ? 1 : 0)) * lanes;
     }
 
@@ -100,26 +101,27 @@ private:
     void draw_large_triangle(const TriangleRecord& r, int left, int top, int right, int bottom) {
         // Edge functions at the tile's first pixel, in whole pixels: adding a multiple of `subpixels` to a value keeps its
         // sign as long as the value is rounded down, so the low bits can go, and what matters within a tile fits 32 bits.
-        TileEdge edges[3];
-        int edge_count = 0;
+        TileEdge edges[3] = {};
         for (int k = 0; k < 3; ++k) {
             const Edge e = edge_at(r, k, tile_left_, tile_top_);
             const std::int64_t value = e.value >> subpixel_bits, across = std::int64_t{e.step_x} * (tile_size - 1), down = std::int64_t{e.step_y} * (tile_size - 1);
             if (value + std::max<std::int64_t>(0, across) + std::max<std::int64_t>(0, down) < 0) return;
-            if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;  // the whole tile is inside this edge
+            // Where the whole tile is inside an edge, an edge of zeros has the same result in 32 bits.
+            if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;
             const std::int32_t block_across = e.step_x * (block_width - 1), block_down = e.step_y * (block_height - 1);
-            edges[edge_count++] = {static_cast<std::int32_t>(value),
-                                   e.step_x,
-                                   e.step_y,
-                                   std::max(0, block_across) + std::max(0, block_down),
-                                   std::min(0, block_across) + std::min(0, block_down),
-                                   lane_x_ * e.step_x + lane_y_ * e.step_y,
-                                   lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
+            edges[k] = {static_cast<std::int32_t>(value),
+                        e.step_x,
+                        e.step_y,
+                        std::max(0, block_across) + std::max(0, block_down),
+                        std::min(0, block_across) + std::min(0, block_down),
+                        lane_x_ * e.step_x + lane_y_ * e.step_y,
+                        lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
         }
         for (int y = top & -part_height; y <= bottom; y += part_height) {
-            for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, edges, edge_count, x, y);
+            for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, edges, x, y);
         }
-        close_pending(r);
+        if (pending_ > 0) add_loose_group(r, pending_xy_, mask_bits(first_lanes<F>(pending_)));
+        pending_ = 0;
     }
 
     struct TileEdge {
@@ -128,19 +130,18 @@ private:
         I pixel_step, block_step;            // from a block's first pixel to each of its pixels; from a part's first block to each of its blocks
     };
 
-    void draw_part(const TriangleRecord& r, const TileEdge* edges, int edge_count, int x, int y) {
-        alignas(64) std::int32_t block_value[3][lanes];
-        I outside(0), divided(0);  // negative if any edge's value is, everywhere or somewhere in a block
-        for (int k = 0; k < edge_count; ++k) {
+    void draw_part(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y) {
+        alignas(64) std::int32_t value[3][lanes];  // at each block's first pixel
+        const auto at_blocks = [&](int k) {
             const TileEdge& e = edges[k];
-            const I value = e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
-            store_lanes(block_value[k], value);
-            outside = outside | (value + e.highest);
-            divided = divided | (value + e.lowest);
-        }
-        std::uint32_t touched = mask_bits(outside >= I(0));
+            const I v = e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
+            store_lanes(value[k], v);
+            return v;
+        };
+        const I a = at_blocks(0), b = at_blocks(1), c = at_blocks(2);
+        std::uint32_t touched = mask_bits(((a + edges[0].highest) | (b + edges[1].highest) | (c + edges[2].highest)) >= I(0));
         if (!touched) return;
-        std::uint32_t covered = mask_bits(divided >= I(0));
+        std::uint32_t covered = mask_bits(((a + edges[0].lowest) | (b + edges[1].lowest) | (c + edges[2].lowest)) >= I(0));
         // Where the part reaches out of what may be drawn its blocks are cut, or left out.
         const bool cut = x < left_ || y < top_ || x + part_width - 1 > right_ || y + part_height - 1 > bottom_;
         if (cut) {
@@ -148,21 +149,22 @@ private:
             touched &= mask_bits((end_x >= I(left_)) & (bx <= I(right_)) & (end_y >= I(top_)) & (by <= I(bottom_)));
             covered &= mask_bits((bx >= I(left_)) & (end_x <= I(right_)) & (by >= I(top_)) & (end_y <= I(bottom_)));
         }
-        for (; touched; touched &= touched - 1) {
-            const int block = __builtin_ctz(touched), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
-            if (covered >> block & 1u) {
-                add_block(r, bx, by, all_lanes_);
-                continue;
-            }
-            I outside_pixel(0);
-            for (int k = 0; k < edge_count; ++k) outside_pixel = outside_pixel | (edges[k].pixel_step + I(block_value[k][block]));
-            M inside = outside_pixel >= I(0);
+        // No two blocks share a pixel, so their order does not matter: whole ones first, each a group of its own.
+        covered &= touched;
+        for (std::uint32_t blocks = covered; blocks; blocks &= blocks - 1) {
+            const int block = __builtin_ctz(blocks);
+            add_block(r, x + block % block_width * block_width, y + block / block_width * block_height, all_lanes_);
+        }
+        for (std::uint32_t blocks = touched & ~covered; blocks; blocks &= blocks - 1) {
+            const int block = __builtin_ctz(blocks), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
+            const auto at_pixels = [&](int k) { return edges[k].pixel_step + I(value[k][block]); };
+            M inside = (at_pixels(0) | at_pixels(1) | at_pixels(2)) >= I(0);
             if (cut) inside = inside & (lane_x_ >= I(left_ - bx)) & (lane_x_ <= I(right_ - bx)) & (lane_y_ >= I(top_ - by)) & (lane_y_ <= I(bottom_ - by));
             const std::uint32_t mask = mask_bits(inside);
-            if (!mask) continue;
-            if (draw_.early_depth) add_block(r, bx, by, mask);
-            else add_pending(r, bx, by, mask);
+            if (!draw_.early_depth) pending_ += compress_lanes(pending_xy_ + pending_, lane_xy_ + ((by << 16) + bx), mask);
+            else if (mask) add_block(r, bx, by, mask);
         }
+        close_pending(r);
     }
 
     // A block of one triangle, in rows of four.
@@ -174,31 +176,20 @@ private:
         add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
     }
 
-    // Fragments of blocks that the triangle covers in part wait until they fill a group: no pixel is covered twice, so their
-    // order does not matter.
-    void add_pending(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
-        pending_ += compress_lanes(pending_x_ + pending_, I(x) + lane_x_, mask);
-        compress_lanes(pending_y_ + (pending_ - __builtin_popcount(mask)), I(y) + lane_y_, mask);
-        if (pending_ < lanes) return;
-        add_loose_group(r, ~0u);
-        pending_ -= lanes;
-        store_lanes(pending_x_, load_lanes<I>(pending_x_ + lanes));
-        store_lanes(pending_y_, load_lanes<I>(pending_y_ + lanes));
-    }
+    // Fragments of blocks that a triangle covers in part wait in pending_xy_ until they fill groups.
     void close_pending(const TriangleRecord& r) {
-        if (pending_ == 0) return;
-        // Idle lanes stand on the first fragment's pixel.
-        const M used = first_lanes<F>(pending_);
-        store_lanes(pending_x_, select(used, load_lanes<I>(pending_x_), I(pending_x_[0])));
-        store_lanes(pending_y_, select(used, load_lanes<I>(pending_y_), I(pending_y_[0])));
-        add_loose_group(r, mask_bits(used));
-        pending_ = 0;
+        if (pending_ < lanes) return;
+        int first = 0;
+        for (; pending_ >= lanes; first += lanes, pending_ -= lanes) add_loose_group(r, pending_xy_ + first, all_lanes_);
+        store_lanes(pending_xy_, load_lanes<I>(pending_xy_ + first));
     }
-    void add_loose_group(const TriangleRecord& r, std::uint32_t mask) {
+    void add_loose_group(const TriangleRecord& r, const std::int32_t* xy, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.rows_of_four = false;
         g.run_width = g.run_start = 0;
-        add_triangle_group(r, load_lanes<I>(pending_x_), load_lanes<I>(pending_y_), mask & all_lanes_);
+        // Idle lanes stand on the first one's pixel.
+        const I at = select(mask_from_bits<F>(mask), load_lanes<I>(xy), I(xy[0]));
+        add_triangle_group(r, at & 0xffff, at >> 16, mask);
     }
 
     void add_triangle_group(const TriangleRecord& r, I px, I py, std::uint32_t mask) {
@@ -498,12 +489,13 @@ private:
     int count_ = 0, packed_ = 0;
     int tile_left_, tile_top_;
     int left_, top_, right_, bottom_;  // of the tile, cut to what may be drawn, right and bottom included
-    I lane_x_, lane_y_;                // a lane's place in a block
+    I lane_x_, lane_y_, lane_xy_;      // a lane's place in a block; both in one, y in the high half
     int result_stride_;
     alignas(64) std::int32_t packed_record_[lanes];
-    // Pixels of the current triangle that wait for a group.
+    // Pixels of the current triangle that wait for a group, x in the low half and y in the high one: less than a group's
+    // and a part's, and a register to spare.
     int pending_ = 0;
-    alignas(64) std::int32_t pending_x_[2 * lanes], pending_y_[2 * lanes];
+    alignas(64) std::int32_t pending_xy_[lanes + part_width * part_height + lanes];
 };
 
 template <class F>

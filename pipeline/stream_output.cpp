@@ -16,14 +16,18 @@ Topology topology_of(const DrawContext& draw) {
     return draw.program.traits->has_geometry ? draw.program.traits->geometry_output : draw.input_topology;
 }
 
-// A NaN among the components that are known to be floats is stored as the one NaN.
-void store_record(std::byte* to, const std::byte* from, const RecordLayout& layout) {
-    std::memcpy(to, from, static_cast<std::size_t>(layout.bytes));
+// Records one after another. A NaN among the components that are known to be floats is stored as the one NaN.
+void store_records(std::byte* to, const std::byte* from, int count, const RecordLayout& layout) {
+    const std::size_t bytes = static_cast<std::size_t>(layout.bytes);
+    std::memcpy(to, from, bytes * static_cast<std::size_t>(count));
     for (int c = 0; c < layout.bytes / 4; ++c) {
         if (!layout.is_float[c]) continue;
-        float value;
-        std::memcpy(&value, to + 4 * c, 4);
-        if (value != value) std::memcpy(to + 4 * c, &canonical_nan, 4);
+        std::byte* component = to + 4 * c;
+        for (int i = 0; i < count; ++i, component += bytes) {
+            float value;
+            std::memcpy(&value, component, 4);
+            if (value != value) std::memcpy(component, &canonical_nan, 4);
+        }
     }
 }
 
@@ -54,8 +58,12 @@ void write_streams(const DrawContext& draw, const Batch& batch, const StreamPlac
         const std::byte* records = draw.program.traits->has_geometry ? batch.stream[s].out.records : batch.shaded.records;
         std::byte* to = cursors[s].data + static_cast<std::size_t>(places.first[s]) * corners * bytes;
         const PrimitiveArrays& primitives = primitives_of(draw, batch, s);
+        if (primitives.in_order) {
+            store_records(to, records, places.count[s], layout);
+            continue;
+        }
         for (int p = 0; p < places.count[s]; ++p)
-            for (int c = 0; c < corners; ++c, to += bytes) store_record(to, records + primitives.corner[c][p] * bytes, layout);
+            for (int c = 0; c < corners; ++c, to += bytes) store_records(to, records + primitives.corner[c][p] * bytes, 1, layout);
     }
 }
 

@@ -74,6 +74,12 @@ inline void store_system_values(const VertexArrays& out, int at, const V& v) {
     }
 }
 
+// first, first + 1, ...: those of the lanes from number `at` on, of `count` in all; lanes beyond repeat the last.
+template <class F>
+inline LaneUint<F> count_up(std::uint32_t first, int at, int count) {
+    return LaneUint<F>(first) + as_uint(min(lane_index<F>() + LaneInt<F>(at), LaneInt<F>(count - 1)));
+}
+
 template <class F, class VS>
 void shade_vertices(const VertexWork& work) {
     using In = InputStruct<VS, F>;
@@ -84,7 +90,8 @@ void shade_vertices(const VertexWork& work) {
     for (int l = 0; l < lanes; ++l) offset[l] = l * component_count<Out>;
 
     for (int i = 0; i < work.count; i += lanes) {
-        const VertexIds<F> ids{load_lanes<LaneUint<F>>(work.vertex_ids + i), load_lanes<LaneUint<F>>(work.instance_ids + i)};
+        const VertexIds<F> ids = work.vertex_ids ? VertexIds<F>{load_lanes<LaneUint<F>>(work.vertex_ids + i), load_lanes<LaneUint<F>>(work.instance_ids + i)}
+                                                 : VertexIds<F>{count_up<F>(work.first_vertex_id, i, work.count), LaneUint<F>(work.first_instance_id)};
         Out out;
         if constexpr (std::is_void_v<In>) {
             out = shader.template operator()<F>(ids);

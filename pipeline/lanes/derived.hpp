@@ -1,6 +1,7 @@
 // The wide operations that follow from those an instruction set's file defines.
 #pragma once
 #include <cstring>
+#include <type_traits>
 
 #include "pipeline/lanes/lanes.hpp"
 
@@ -67,15 +68,16 @@ inline L load_lanes(const void* memory) {
 template <class T, int N> inline void store_lanes(void* memory, Lanes<T, N> value) { std::memcpy(memory, &value, sizeof value); }
 
 // The lanes of `mask` side by side from `memory` on, which has room for a whole register; their number.
-template <int N> requires(N < 16)
-inline int compress_lanes(std::int32_t* memory, IntLanes<N> value, std::uint32_t mask) {
-    alignas(sizeof value) std::int32_t all[N];
+template <class T, int N> requires(N < 16)
+inline int compress_lanes(T* memory, Lanes<T, N> value, std::uint32_t mask) {
+    alignas(sizeof value) T all[N];
     store_lanes(all, value);
     int count = 0;
     for (; mask; mask &= mask - 1) memory[count++] = all[__builtin_ctz(mask)];
     return count;
 }
-inline int compress_lanes(std::int32_t* memory, std::int32_t value, std::uint32_t mask) {
+template <class T> requires(std::is_arithmetic_v<T>)
+inline int compress_lanes(T* memory, T value, std::uint32_t mask) {
     *memory = value;
     return static_cast<int>(mask & 1u);
 }

@@ -83,8 +83,9 @@ inline void store_lanes(T* memory, Lanes<T, 16> value, Mask<16> mask) {
 }
 
 // The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
-inline int compress_lanes(std::int32_t* memory, IntLanes<16> value, std::uint32_t mask) {
-    _mm512_storeu_si512(memory, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), avx512::si(value)));
+template <class T>
+inline int compress_lanes(T* memory, Lanes<T, 16> value, std::uint32_t mask) {
+    _mm512_storeu_si512(memory, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), (__m512i)value.v));
     return __builtin_popcount(mask);
 }
 

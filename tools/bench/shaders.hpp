@@ -501,7 +501,7 @@ struct ExtrudeBeam {
 struct ScatterBeam {
     glm::vec3 eye;
     template <class F>
-    vec4<F> operator()(const BeamVertex<F>& in) const {
+    [[gnu::always_inline]] vec4<F> operator()(const BeamVertex<F>& in) const {
         constexpr float sigma_t = 0.35f, sigma_s = 0.25f, g = 0.5f;
         const vec3<F> b = glm::cross(in.normal, in.tangent), direction = glm::normalize(in.world - broadcast<F>(eye)), to_eye = broadcast<F>(eye) - in.origin;
         const auto to_beam = [&](const vec3<F>& v) { return vec3<F>(glm::dot(v, in.tangent), glm::dot(v, in.normal), glm::dot(v, b)); };

@@ -80,9 +80,6 @@ struct alignas(64) FragmentGroup {
     bool uniform;
     bool constant;      // all three corners are one vertex, whose values every fragment has: a point
     bool rows_of_four;  // lanes are rows of four neighbours from (x[0], y[0]) on, row after row, all within the target
-    // Lanes are neighbours in a row, row after row, `run_width` in each; the first lane is number `run_start` of its row.
-    // 0: they are anywhere.
-    std::int32_t run_width, run_start;
     std::uint32_t corner[3][N];  // records to interpolate between
     std::uint32_t leading[N];    // record that flat values come from
     std::uint32_t primitive_id[N];

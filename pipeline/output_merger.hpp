@@ -3,7 +3,6 @@
 // Fragments are merged one after another, so that those of one pixel meet it in primitive order; where no two of a group
 // can share a pixel the depth test works on all lanes at once. A NaN is stored as 0x7fc00000.
 #pragma once
-#include <algorithm>
 #include <cstring>
 
 #include "pipeline/draw_context.hpp"
@@ -98,9 +97,23 @@ inline Color4 blend(const BlendState& state, Color4 source, Color4 destination) 
     return result;
 }
 
-// One texel.
-template <Format format, MergeMode mode>
-inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
+// ---- groups of fragments
+
+// A flush's groups and their results on the way into one target.
+template <int N>
+struct MergeWork {
+    const FragmentGroup<N>* groups;
+    const std::uint32_t* masks;  // of what passed
+    int count;
+    const float* results;  // of the first group, for this target
+    int result_stride;
+    std::byte* first_row;  // of the target
+    std::ptrdiff_t pitch;
+};
+
+// One texel. `finite`: the colour is, so that only a NaN that is there already can come of it, and that is in its stored form.
+template <Format format, MergeMode mode, bool finite>
+[[gnu::always_inline]] inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
     Color4 color;
     std::memcpy(&color, source, sizeof color);
     // What enters the blender of a fixed-point target is clamped to its range first, as in Direct3D.
@@ -108,99 +121,112 @@ inline void merge_texel(const ColorTarget& how, std::byte* at, const float* sour
         for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
     if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
     if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
-    store_texel<format>(at, color);
+    if constexpr (format == Format::RGBA32F && finite) std::memcpy(at, &color, sizeof color);
+    else store_texel<format>(at, color);
 }
 
-// Neighbours in a row. Where a texel is what a colour is, one operation serves as many as fit into a register: not, though,
-// where texels are read that a primitive before may have written in other portions, since a load that takes parts of
-// several stores waits until those have reached the cache.
-template <class F, Format format, MergeMode mode>
-inline void merge_run(const ColorTarget& how, std::byte* at, const float* source, int count, bool aligned) {
+template <Format format, MergeMode mode, bool finite, class Texel>
+[[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, const Texel& texel, const float* colors, std::uint32_t mask) {
+    if ((mask & (mask + 1)) == 0) {  // all from the first lane on
+        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode, finite>(how, texel(l), colors + 4 * l);
+    } else {
+        for (; mask; mask &= mask - 1) {
+            const int l = __builtin_ctz(mask);
+            merge_texel<format, mode, finite>(how, texel(l), colors + 4 * l);
+        }
+    }
+}
+
+// Rows of four neighbours that are drawn whole: where a texel is what a colour is, one operation serves as many of them as
+// fit into a register. Only for blocks, which lie on a grid: a load that takes parts of several stores, as those of points
+// side by side would, waits until these have reached the cache. Returns what is left to do.
+template <class F, MergeMode mode>
+[[gnu::always_inline]] inline std::uint32_t merge_rows_of_four(std::byte* first, std::ptrdiff_t pitch, const float* colors, std::uint32_t mask) {
     constexpr int lanes = lanes_of<F>;
-    if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4) {
-        if (mode == MergeMode::Opaque || aligned)
-        for (; count >= lanes / 4; count -= lanes / 4, at += lanes * 4, source += lanes) {
-            F color = load_lanes<F>(source);
+    for (int l = 0; l < lanes; l += 4) {
+        if ((mask >> l & 15u) != 15u) continue;
+        for (int part = 0; part < 16; part += lanes) {
+            std::byte* at = first + (l / 4) * pitch + part * 4;
+            F color = load_lanes<F>(colors + 4 * l + part);
             if constexpr (mode == MergeMode::Additive) color = color + load_lanes<F>(at);
             store_lanes(at, select(is_nan(color), F(canonical_nan), color));
         }
+        mask &= ~(15u << l);
     }
-    for (; count > 0; --count, at += bytes_per_texel(format), source += 4) merge_texel<format, mode>(how, at, source);
+    return mask;
 }
 
-// Merges the colours of a group's fragments into one target. `colors` holds the lanes' colours one after another.
+// The groups' colours into one target.
 template <class F, Format format, MergeMode mode>
-inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t pitch, const FragmentGroup<lanes_of<F>>& group, const float* colors, std::uint32_t mask) {
+void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
     constexpr int lanes = lanes_of<F>;
-    const auto texel = [&](int l) { return base + group.y[l] * pitch + group.x[l] * bytes_per_texel(format); };
-    if constexpr (lanes > 1) {
-        const int run = group.run_width;
-        if (run > 0 && (mask & (mask + 1)) == 0) {
-            const int end = __builtin_popcount(mask);
-            for (int l = 0, in_row = group.run_start; l < end; in_row = 0) {
-                const int count = std::min(run - in_row, end - l);
-                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, count, group.rows_of_four);
-                l += count;
+    for (int g = 0; g < work.count; ++g) {
+        const FragmentGroup<lanes>& group = work.groups[g];
+        std::uint32_t mask = work.masks[g];
+        const float* r = work.results + g * work.result_stride;
+        const F color[4] = {load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes)};
+        alignas(64) float colors[4 * lanes];
+        store_transposed4(colors, color[0], color[1], color[2], color[3]);
+        const auto texel = [&](int l) __attribute__((always_inline)) { return work.first_row + group.y[l] * work.pitch + group.x[l] * bytes_per_texel(format); };
+        if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4)
+            if (group.rows_of_four) mask = merge_rows_of_four<F, mode>(texel(0), work.pitch, colors, mask);
+        if (!mask) continue;
+        if constexpr (format == Format::RGBA32F && mode == MergeMode::Additive) {
+            constexpr float largest = 0x1.fffffep127f;
+            if (all((abs(color[0]) <= largest) & (abs(color[1]) <= largest) & (abs(color[2]) <= largest) & (abs(color[3]) <= largest))) {
+                merge_texels<format, mode, true>(how, texel, colors, mask);
+                continue;
             }
-            return;
         }
-        if (run == 4) {  // blocks that are not whole: their whole rows
-            for (int l = 0; l < lanes; l += 4) {
-                if ((mask >> l & 15u) != 15u) continue;
-                merge_run<F, format, mode>(how, texel(l), colors + 4 * l, 4, true);
-                mask &= ~(15u << l);
-            }
-        }
-    }
-    for (std::uint32_t bits = mask; bits; bits &= bits - 1) {
-        const int l = __builtin_ctz(bits);
-        merge_texel<format, mode>(how, texel(l), colors + 4 * l);
+        merge_texels<format, mode, false>(how, texel, colors, mask);
     }
 }
 
 template <class F, Format format>
-inline void merge_colors(const ColorTarget& how, std::byte* base, std::ptrdiff_t pitch, const FragmentGroup<lanes_of<F>>& group, const float* colors, std::uint32_t mask) {
+inline void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
     switch (how.mode) {
-        case MergeMode::Opaque: return merge_colors<F, format, MergeMode::Opaque>(how, base, pitch, group, colors, mask);
-        case MergeMode::Additive: return merge_colors<F, format, MergeMode::Additive>(how, base, pitch, group, colors, mask);
-        case MergeMode::General: return merge_colors<F, format, MergeMode::General>(how, base, pitch, group, colors, mask);
+        case MergeMode::Opaque: return merge_groups<F, format, MergeMode::Opaque>(how, work);
+        case MergeMode::Additive: return merge_groups<F, format, MergeMode::Additive>(how, work);
+        case MergeMode::General: return merge_groups<F, format, MergeMode::General>(how, work);
     }
 }
 
-// Merges one group's results: the late depth test where there was no early one, then every colour.
+// Merges the results of a flush's groups: the late depth test where there was no early one, then every colour.
 template <class F>
-inline void merge_group(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>& group, const float* results, PipelineStatistics& statistics) {
+inline void merge(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>* groups, int count, const float* results, int result_stride,
+                  PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
-    std::uint32_t mask = group.mask;
-    if (!draw.early_depth && draw.state.depth.used() && mask) {
-        alignas(64) float depth[lanes];
-        if (draw.program.traits->writes_depth) {
-            const F written = load_lanes<F>(results + draw.program.traits->color_count * 4 * lanes);
-            store_lanes(depth, min(max(written, F(draw.min_depth)), F(draw.max_depth)));
-        } else {
-            std::memcpy(depth, group.z, sizeof depth);
+    std::uint32_t masks[groups_per_flush];
+    std::uint64_t fragments = 0;
+    for (int g = 0; g < count; ++g) {
+        masks[g] = groups[g].mask;
+        if (!draw.early_depth && draw.state.depth.used() && masks[g]) {
+            alignas(64) float depth[lanes];
+            if (draw.program.traits->writes_depth) {
+                const F written = load_lanes<F>(results + g * result_stride + draw.program.traits->color_count * 4 * lanes);
+                store_lanes(depth, min(max(written, F(draw.min_depth)), F(draw.max_depth)));
+            } else {
+                std::memcpy(depth, groups[g].z, sizeof depth);
+            }
+            masks[g] = test_depth<F>(draw.state.depth, target, groups[g], depth, masks[g], statistics);
         }
-        mask = test_depth<F>(draw.state.depth, target, group, depth, mask, statistics);
+        fragments += static_cast<unsigned>(__builtin_popcount(masks[g]));
     }
-    if (!mask) return;
-    const unsigned fragments = static_cast<unsigned>(__builtin_popcount(mask));
     statistics.samples_passed += fragments;
     for (int t = 0; t < draw.color_count; ++t) {
         const ColorTarget& how = draw.color[t];
-        const float* r = results + t * 4 * lanes;
-        alignas(64) float colors[4 * lanes];
-        store_transposed4(colors, load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes));
+        const MergeWork<lanes> work{groups, masks, count, results + t * 4 * lanes, result_stride, target.color[t], target.color_pitch[t]};
         switch (how.format) {
-            case Format::R32F: merge_colors<F, Format::R32F>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::RG32F: merge_colors<F, Format::RG32F>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::RGBA32F: merge_colors<F, Format::RGBA32F>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::RGBA16F: merge_colors<F, Format::RGBA16F>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::RGBA8: merge_colors<F, Format::RGBA8>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::RGBA8Srgb: merge_colors<F, Format::RGBA8Srgb>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
-            case Format::R32U: merge_colors<F, Format::R32U, MergeMode::Opaque>(how, target.color[t], target.color_pitch[t], group, colors, mask); break;
+            case Format::R32F: merge_groups<F, Format::R32F>(how, work); break;
+            case Format::RG32F: merge_groups<F, Format::RG32F>(how, work); break;
+            case Format::RGBA32F: merge_groups<F, Format::RGBA32F>(how, work); break;
+            case Format::RGBA16F: merge_groups<F, Format::RGBA16F>(how, work); break;
+            case Format::RGBA8: merge_groups<F, Format::RGBA8>(how, work); break;
+            case Format::RGBA8Srgb: merge_groups<F, Format::RGBA8Srgb>(how, work); break;
+            case Format::R32U: merge_groups<F, Format::R32U, MergeMode::Opaque>(how, work); break;
             case Format::D32F: break;  // no colour format; refused before the draw
         }
-        statistics.bytes_written += std::uint64_t{fragments} * static_cast<unsigned>(how.texel_bytes);
+        statistics.bytes_written += fragments * static_cast<unsigned>(how.texel_bytes);
         if (how.mode != MergeMode::Opaque) statistics.blended_fragments += fragments;
     }
 }

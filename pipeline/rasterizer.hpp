@@ -131,14 +131,11 @@ private:
     };
 
     void draw_part(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y) {
-        alignas(64) std::int32_t value[3][lanes];  // at each block's first pixel
         const auto at_blocks = [&](int k) {
             const TileEdge& e = edges[k];
-            const I v = e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
-            store_lanes(value[k], v);
-            return v;
+            return e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
         };
-        const I a = at_blocks(0), b = at_blocks(1), c = at_blocks(2);
+        const I a = at_blocks(0), b = at_blocks(1), c = at_blocks(2);  // at each block's first pixel
         std::uint32_t touched = mask_bits(((a + edges[0].highest) | (b + edges[1].highest) | (c + edges[2].highest)) >= I(0));
         if (!touched) return;
         std::uint32_t covered = mask_bits(((a + edges[0].lowest) | (b + edges[1].lowest) | (c + edges[2].lowest)) >= I(0));
@@ -157,8 +154,7 @@ private:
         }
         for (std::uint32_t blocks = touched & ~covered; blocks; blocks &= blocks - 1) {
             const int block = __builtin_ctz(blocks), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
-            const auto at_pixels = [&](int k) { return edges[k].pixel_step + I(value[k][block]); };
-            M inside = (at_pixels(0) | at_pixels(1) | at_pixels(2)) >= I(0);
+            M inside = ((repeat_lane(a, block) + edges[0].pixel_step) | (repeat_lane(b, block) + edges[1].pixel_step) | (repeat_lane(c, block) + edges[2].pixel_step)) >= I(0);
             if (cut) inside = inside & (lane_x_ >= I(left_ - bx)) & (lane_x_ <= I(right_ - bx)) & (lane_y_ >= I(top_ - by)) & (lane_y_ <= I(bottom_ - by));
             const std::uint32_t mask = mask_bits(inside);
             if (!draw_.early_depth) pending_ += compress_lanes(pending_xy_ + pending_, lane_xy_ + ((by << 16) + bx), mask);
@@ -171,8 +167,6 @@ private:
     void add_block(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.rows_of_four = whole_rows(x, y);
-        g.run_width = block_width;
-        g.run_start = 0;
         add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
     }
 
@@ -186,7 +180,6 @@ private:
     void add_loose_group(const TriangleRecord& r, const std::int32_t* xy, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.rows_of_four = false;
-        g.run_width = g.run_start = 0;
         // Idle lanes stand on the first one's pixel.
         const I at = select(mask_from_bits<F>(mask), load_lanes<I>(xy), I(xy[0]));
         add_triangle_group(r, at & 0xffff, at >> 16, mask);
@@ -259,22 +252,25 @@ private:
 
     // Row after row without gaps, from group to group.
     void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
-        const I row = to_int_in_range((to_float(lane_index<F>()) + F(0.5f)) * F(1.0f / static_cast<float>(width)));  // floor(lane / width): exact for small numbers
-        I x = lane_index<F>() - row * width, y = row;
-        const int rows_on = lanes / width, columns_on = lanes % width;
-        int start = 0;
+        if (width != dense_width_) lay_out_dense(width);
+        I x = dense_x_, y = dense_y_;
         for (int remaining = width * height; remaining > 0; remaining -= lanes) {
-            Group& g = groups_[count_];
-            g.rows_of_four = false;
-            g.run_width = width;
-            g.run_start = start;
-            add_splat(r, I(left) + x, I(top) + y, mask_bits(first_lanes<F>(remaining)));
-            x = x + columns_on;
+            groups_[count_].rows_of_four = false;
+            add_splat(r, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
+            x = x + dense_columns_on_;
             const M next_row = x >= width;
             x = select(next_row, x - width, x);
-            y = y + rows_on + select(next_row, I(1), I(0));
-            start = start + columns_on >= width ? start + columns_on - width : start + columns_on;
+            y = y + dense_rows_on_ + select(next_row, I(1), I(0));
         }
+    }
+    // Which column and row of a rectangle this wide the lanes of its first group stand on, and how far the next ones are.
+    void lay_out_dense(int width) {
+        dense_width_ = width;
+        const I number = lane_index<F>();
+        dense_y_ = to_int_in_range((to_float(number) + F(0.5f)) * F(1.0f / static_cast<float>(width)));  // exact: numbers are small
+        dense_x_ = number - dense_y_ * width;
+        dense_columns_on_ = lanes % width;
+        dense_rows_on_ = lanes / width;
     }
 
     void draw_point_blocks(const PointRecord& r, int left, int top, int right, int bottom) {
@@ -283,8 +279,6 @@ private:
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
                 Group& g = groups_[count_];
                 g.rows_of_four = whole_rows(x, y);
-                g.run_width = block_width;
-                g.run_start = 0;
                 add_splat(r, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
@@ -369,7 +363,6 @@ private:
         g.uniform = true;
         g.constant = false;
         g.rows_of_four = false;
-        g.run_width = g.run_start = 0;
         const float length = static_cast<float>(steep ? r.y[1] - r.y[0] : r.x[1] - r.x[0]);
         const float way = static_cast<float>((steep ? y : x) * subpixels + subpixels / 2 - (steep ? r.y[0] : r.x[0]));
         const float t = min(max(way / length, 0.0f), 1.0f);
@@ -414,7 +407,6 @@ private:
         g.uniform = false;
         g.constant = draw_.raster_topology == Topology::PointList;
         g.rows_of_four = false;
-        g.run_width = g.run_start = 0;
         const I record = load_lanes<I>(packed_record_), px = load_lanes<I>(g.x), py = load_lanes<I>(g.y);
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);
         const auto store_word = [](std::uint32_t* to, F word) { store_lanes(to, float_bits(word)); };
@@ -466,7 +458,7 @@ private:
         } else {
             shade(0, count_);
         }
-        for (int g = 0; g < count_; ++g) merge_group<F>(draw_, target_, groups_[g], scratch_.results + g * result_stride_, scratch_.statistics);
+        merge<F>(draw_, target_, groups_, count_, scratch_.results, result_stride_, scratch_.statistics);
         count_ = 0;
     }
     void shade(int first, int count) {
@@ -491,6 +483,8 @@ private:
     int left_, top_, right_, bottom_;  // of the tile, cut to what may be drawn, right and bottom included
     I lane_x_, lane_y_, lane_xy_;      // a lane's place in a block; both in one, y in the high half
     int result_stride_;
+    int dense_width_ = 0, dense_columns_on_ = 0, dense_rows_on_ = 0;  // see lay_out_dense
+    I dense_x_, dense_y_;
     alignas(64) std::int32_t packed_record_[lanes];
     // Pixels of the current triangle that wait for a group, x in the low half and y in the high one: less than a group's
     // and a part's, and a register to spare.

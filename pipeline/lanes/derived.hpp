@@ -67,6 +67,7 @@ inline L load_lanes(const void* memory) {
 }
 template <class T, int N> inline void store_lanes(void* memory, Lanes<T, N> value) { std::memcpy(memory, &value, sizeof value); }
 
+inline std::int32_t repeat_lane(std::int32_t x, int) { return x; }
 // The lanes of `mask` side by side from `memory` on, which has room for a whole register; their number.
 template <class T, int N> requires(N < 16)
 inline int compress_lanes(T* memory, Lanes<T, N> value, std::uint32_t mask) {

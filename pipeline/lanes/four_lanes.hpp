@@ -4,6 +4,9 @@
 
 namespace nephroid {
 
+// One lane's value in all.
+inline IntLanes<4> repeat_lane(IntLanes<4> x, int lane) { return IntLanes<4>(x[lane]); }
+
 inline FloatLanes<4> half_to_float(UintLanes<4> x) {
     const UintLanes<4> sign = (x & UintLanes<4>(0x8000u)) << 16, magnitude = x & UintLanes<4>(0x7fffu);
     const UintLanes<4> finite = float_bits(bits_float(magnitude << 13) * 0x1p112f);

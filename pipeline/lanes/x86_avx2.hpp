@@ -94,6 +94,9 @@ inline void store_lanes(T* memory, Lanes<T, 8> value, Mask<8> mask) {
     _mm256_maskstore_epi32(reinterpret_cast<int*>(memory), mask.m, (__m256i)value.v);
 }
 
+// One lane's value in all.
+inline IntLanes<8> repeat_lane(IntLanes<8> x, int lane) { return avx2::i(_mm256_permutevar8x32_epi32(avx2::si(x), _mm256_set1_epi32(lane))); }
+
 namespace avx2 {
 // Four rows of two quadruples each to four columns of eight, and back: the same shuffles serve both.
 inline void transpose_quads(__m256& a, __m256& b, __m256& c, __m256& d) {

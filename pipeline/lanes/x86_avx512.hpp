@@ -82,6 +82,9 @@ inline void store_lanes(T* memory, Lanes<T, 16> value, Mask<16> mask) {
     _mm512_mask_storeu_epi32(memory, mask.m, (__m512i)value.v);
 }
 
+// One lane's value in all.
+inline IntLanes<16> repeat_lane(IntLanes<16> x, int lane) { return avx512::i(_mm512_permutexvar_epi32(_mm512_set1_epi32(lane), avx512::si(x))); }
+
 // The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
 template <class T>
 inline int compress_lanes(T* memory, Lanes<T, 16> value, std::uint32_t mask) {

@@ -38,7 +38,7 @@ macro(_nephroid_isa_settings)
   set(NEPHROID_ISA_NAME_neon Neon)
   set(NEPHROID_ISA_FLAGS_sse42 -msse4.2)
   set(NEPHROID_ISA_FLAGS_avx2 -mavx2 -mf16c -mtune=haswell)
-  set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mtune=skylake-avx512)
+  set(NEPHROID_ISA_FLAGS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mf16c -mtune=skylake-avx512)
   # Structs of lanes are copied a whole register at a time: what is stored in halves cannot be loaded whole without a wait.
   # GCC 12 takes the deliberately undefined operand inside its own AVX-512 intrinsics for a mistake of ours.
   set(NEPHROID_ISA_FLAGS_GNU_avx2 -mmove-max=256 -mstore-max=256)

@@ -102,12 +102,14 @@ private:
         // Edge functions at the tile's first pixel, in whole pixels: adding a multiple of `subpixels` to a value keeps its
         // sign as long as the value is rounded down, so the low bits can go, and what matters within a tile fits 32 bits.
         TileEdge edges[3] = {};
+        bool whole_tile = true;
         for (int k = 0; k < 3; ++k) {
             const Edge e = edge_at(r, k, tile_left_, tile_top_);
             const std::int64_t value = e.value >> subpixel_bits, across = std::int64_t{e.step_x} * (tile_size - 1), down = std::int64_t{e.step_y} * (tile_size - 1);
             if (value + std::max<std::int64_t>(0, across) + std::max<std::int64_t>(0, down) < 0) return;
             // Where the whole tile is inside an edge, an edge of zeros has the same result in 32 bits.
             if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;
+            whole_tile = false;
             const std::int32_t block_across = e.step_x * (block_width - 1), block_down = e.step_y * (block_height - 1);
             edges[k] = {static_cast<std::int32_t>(value),
                         e.step_x,
@@ -117,12 +119,25 @@ private:
                         lane_x_ * e.step_x + lane_y_ * e.step_y,
                         lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
         }
+        if (whole_tile) return draw_whole_tile(r);
         for (int y = top & -part_height; y <= bottom; y += part_height) {
             for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, edges, x, y);
         }
         if (pending_ > 0) add_loose_group(r, pending_xy_, mask_bits(first_lanes<F>(pending_)));
         pending_ = 0;
     }
+
+    // All that may be drawn of the tile, row after row, as processors like to read.
+    void draw_whole_tile(const TriangleRecord& r) {
+        for (int y = top_ & -block_height; y <= bottom_; y += block_height) {
+            for (int x = left_ & -block_width; x <= right_; x += block_width) {
+                const bool cut = x < left_ || y < top_ || x + block_width - 1 > right_ || y + block_height - 1 > bottom_;
+                add_block(r, x, y, cut ? mask_bits(inside_rectangle(x, y)) : all_lanes_);
+            }
+        }
+    }
+    // A block's pixels that may be drawn.
+    M inside_rectangle(int x, int y) const { return (lane_x_ >= I(left_ - x)) & (lane_x_ <= I(right_ - x)) & (lane_y_ >= I(top_ - y)) & (lane_y_ <= I(bottom_ - y)); }
 
     struct TileEdge {
         std::int32_t value, step_x, step_y;  // at the tile's first pixel; from pixel to pixel
@@ -155,7 +170,7 @@ private:
         for (std::uint32_t blocks = touched & ~covered; blocks; blocks &= blocks - 1) {
             const int block = __builtin_ctz(blocks), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
             M inside = ((repeat_lane(a, block) + edges[0].pixel_step) | (repeat_lane(b, block) + edges[1].pixel_step) | (repeat_lane(c, block) + edges[2].pixel_step)) >= I(0);
-            if (cut) inside = inside & (lane_x_ >= I(left_ - bx)) & (lane_x_ <= I(right_ - bx)) & (lane_y_ >= I(top_ - by)) & (lane_y_ <= I(bottom_ - by));
+            if (cut) inside = inside & inside_rectangle(bx, by);
             const std::uint32_t mask = mask_bits(inside);
             if (!draw_.early_depth) pending_ += compress_lanes(pending_xy_ + pending_, lane_xy_ + ((by << 16) + bx), mask);
             else if (mask) add_block(r, bx, by, mask);
@@ -453,6 +468,7 @@ private:
     // Shades the groups that wait and merges what comes of them.
     void flush() {
         if (count_ == 0) return;
+        prefetch_targets();
         if (draw_.observer) {
             flush_observed();
         } else {
@@ -460,6 +476,17 @@ private:
         }
         merge<F>(draw_, target_, groups_, count_, scratch_.results, result_stride_, scratch_.statistics);
         count_ = 0;
+    }
+    // Asks for the texels that will be written, so that they come while the groups are shaded.
+    void prefetch_targets() const {
+        for (int t = 0; t < draw_.color_count; ++t) {
+            const std::byte* first = target_.color[t];
+            const std::ptrdiff_t pitch = target_.color_pitch[t], texel_bytes = draw_.color[t].texel_bytes;
+            for (int g = 0; g < count_; ++g) {
+                const Group& group = groups_[g];
+                for (int l = 0; l < lanes; l += group.rows_of_four ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
+            }
+        }
     }
     void shade(int first, int count) {
         if (!draw_.kernels->shade_pixels) return;

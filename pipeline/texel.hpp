@@ -11,6 +11,10 @@
 #include "pipeline/lanes/scalar.hpp"
 #include "pipeline/srgb.hpp"
 
+#if defined(__F16C__)
+#include <immintrin.h>
+#endif
+
 namespace nephroid {
 
 inline constexpr float canonical_nan = bits_float(0x7fc00000u);
@@ -43,9 +47,13 @@ inline Color4 load_texel(const std::byte* at) {
         std::memcpy(rg, at, 8);
         c[0] = rg[0], c[1] = rg[1];
     } else if constexpr (format == Format::RGBA16F) {
+#if defined(__F16C__)
+        c = (Color4)_mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(at)));
+#else
         std::uint16_t h[4];
         std::memcpy(h, at, 8);
         for (int k = 0; k < 4; ++k) c[k] = half_to_float(h[k]);
+#endif
     } else {
         std::uint8_t b[4];
         std::memcpy(b, at, 4);
@@ -69,9 +77,13 @@ inline void store_texel(std::byte* at, Color4 color) {
         const float rg[2] = {canonical(color[0]), canonical(color[1])};
         std::memcpy(at, rg, 8);
     } else if constexpr (format == Format::RGBA16F) {
+#if defined(__F16C__)
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(at), _mm_cvtps_ph((__m128)canonical(color), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
+#else
         std::uint16_t h[4];
         for (int k = 0; k < 4; ++k) h[k] = static_cast<std::uint16_t>(float_to_half(color[k]));
         std::memcpy(at, h, 8);
+#endif
     } else {
         std::uint8_t b[4];
         for (int k = 0; k < 4; ++k) b[k] = format == Format::RGBA8Srgb && k < 3 ? linear_to_srgb(color[k]) : unorm8(color[k]);

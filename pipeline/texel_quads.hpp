@@ -6,7 +6,7 @@
 
 #include "pipeline/lanes.hpp"
 
-#if defined(__AVX512F__) || (defined(__AVX2__) && defined(__F16C__))
+#if defined(__SSE4_1__)
 #include <immintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
@@ -137,6 +137,10 @@ template <int N>
         const uint16x8_t halves = vld1q_u16(reinterpret_cast<const std::uint16_t*>(at[j]));
         a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_low_u16(halves))));
         b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_high_u16(halves))));
+#elif defined(__SSE4_1__)
+        const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at[j]));
+        a[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_cvtepu16_epi32(halves)));
+        b[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_unpackhi_epi16(halves, _mm_setzero_si128())));
 #else
         std::uint16_t halves[8];
         std::memcpy(halves, at[j], sizeof halves);

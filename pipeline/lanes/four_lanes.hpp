@@ -9,7 +9,9 @@ inline IntLanes<4> repeat_lane(IntLanes<4> x, int lane) { return IntLanes<4>(x[l
 
 inline FloatLanes<4> half_to_float(UintLanes<4> x) {
     const UintLanes<4> sign = (x & UintLanes<4>(0x8000u)) << 16, magnitude = x & UintLanes<4>(0x7fffu);
-    const UintLanes<4> finite = float_bits(bits_float(magnitude << 13) * 0x1p112f);
+    const UintLanes<4> subnormal = float_bits(to_float(as_int(magnitude)) * 0x1p-24f), normal = (magnitude << 13) + (112u << 23);
+    const UintLanes<4> finite = select(magnitude < 0x400u, subnormal, normal);
+    if (none(magnitude >= 0x7c00u)) return bits_float(sign | finite);
     const UintLanes<4> special = UintLanes<4>(0x7f800000u) | select(magnitude > 0x7c00u, UintLanes<4>(0x400000u), 0u) | ((magnitude & UintLanes<4>(0x3ffu)) << 13);
     return bits_float(sign | select(magnitude >= 0x7c00u, special, finite));
 }

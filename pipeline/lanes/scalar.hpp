@@ -67,9 +67,9 @@ inline float to_float(std::uint32_t x) { return static_cast<float>(x); }
 inline float half_to_float(std::uint32_t x) {
     const std::uint32_t sign = (x & 0x8000u) << 16, magnitude = x & 0x7fffu;
     if (magnitude >= 0x7c00u) return bits_float(sign | 0x7f800000u | (magnitude > 0x7c00u ? 0x400000u : 0u) | ((magnitude & 0x3ffu) << 13));
-    // Read as binary32 the exponent is off by 127 - 15; multiplying by that power of two rebiases, subnormals included.
-    const float scaled = bits_float(magnitude << 13) * 0x1p112f;
-    return bits_float(sign | float_bits(scaled));
+    // Subnormals are integers times 2^-24. (Not bits of a subnormal float times a power of two: processors are slow at those.)
+    if (magnitude < 0x400u) return bits_float(sign | float_bits(static_cast<float>(static_cast<std::int32_t>(magnitude)) * 0x1p-24f));
+    return bits_float(sign | ((magnitude << 13) + (112u << 23)));
 }
 // Rounds to nearest even; overflow gives infinity, NaN the canonical quiet NaN 0x7e00.
 inline std::uint32_t float_to_half(float x) {

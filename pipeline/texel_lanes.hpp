@@ -138,10 +138,12 @@ template <Format format, class F>
     }
 }
 
-// Two texels of one row that starts at data[row]: numbers `first` and `second`, where `second` is first + 1 or first, or
-// anything below `first` if `may_wrap`.
+// What is known of two texels' numbers: the second is the first + 1; or that, or the first; or anything.
+enum class Neighbours { Always, Mostly, Anywhere };
+
+// Two texels of one row that starts at data[row].
 template <Format format, class F>
-[[gnu::always_inline]] inline void load_texel_pairs(const std::byte* data, LaneUint<F> row, LaneUint<F> first, LaneUint<F> second, bool may_wrap,
+[[gnu::always_inline]] inline void load_texel_pairs(const std::byte* data, LaneUint<F> row, LaneUint<F> first, LaneUint<F> second, Neighbours neighbours,
                                                     TexelLanes<format, F>& a, TexelLanes<format, F>& b) {
     constexpr unsigned words = texel_words<format>;
     constexpr bool one_load = words == 2 || is_quads<format, F>;
@@ -163,9 +165,10 @@ template <Format format, class F>
         }
         // What was loaded as the second is the texel behind the first: not so at an edge, where both are the same, or the
         // second is at the other end of the row.
+        if (neighbours == Neighbours::Always) return;
         const LaneMask<F> adjacent = second > first;
-        if (may_wrap && !all(adjacent)) b = select_texel<format, F>(adjacent, b, load_texels<format, F>(data, row + second * words));
-        else if (!may_wrap) b = select_texel<format, F>(adjacent, b, a);
+        if (neighbours == Neighbours::Mostly) b = select_texel<format, F>(adjacent, b, a);
+        else if (!all(adjacent)) b = select_texel<format, F>(adjacent, b, load_texels<format, F>(data, row + second * words));
     }
 }
 

@@ -111,8 +111,18 @@ template <int N>
 [[gnu::always_inline]] inline void load_quad_pairs(const float* base, IntLanes<N> index, FloatLanes<N> a[4], FloatLanes<N> b[4]) {
     const quads::LaneAddresses<N> at(base, index);
     for (int j = 0; j < 4; ++j) {
+#if defined(__AVX512F__)
+        // Eight floats per load, then even and odd quads apart.
+        const auto load = [&](int low, int high) __attribute__((always_inline)) {
+            return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(reinterpret_cast<const double*>(at[low]))), _mm256_loadu_pd(reinterpret_cast<const double*>(at[high])), 1);
+        };
+        const __m512 first = _mm512_castpd_ps(load(j, j + 4)), second = _mm512_castpd_ps(load(j + 8, j + 12));
+        a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm512_shuffle_f32x4(first, second, 0x88));
+        b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm512_shuffle_f32x4(first, second, 0xdd));
+#else
         a[j] = quads::load_quad(at, j, 0);
         b[j] = quads::load_quad(at, j, 4);
+#endif
     }
 }
 // The eight binary16 at base[index] of every lane: the first four in `a`, the others in `b`.

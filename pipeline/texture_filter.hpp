@@ -14,13 +14,13 @@ namespace nephroid {
 
 // ---- one level
 
-// The taps of one row, linear along x. `row` is the row's first word; with `border` set, taps outside the level or in a
-// row outside have the border's value.
+// The taps of one row, linear along x. `row` is the row's first word of `data`; with `border` set, taps outside the level or
+// in a row outside have the border's value.
 template <Format format, class F>
-[[gnu::always_inline]] inline TexelLanes<format, F> filter_row(const Sampler& sampler, const TextureLevel& level, LaneUint<F> row,
-                                                               const LinearTaps<F>& x, bool border, LaneMask<F> row_inside) {
+[[gnu::always_inline]] inline TexelLanes<format, F> filter_row(const Sampler& sampler, const std::byte* data, LaneUint<F> row, const LinearTaps<F>& x, Neighbours neighbours,
+                                                               bool border, LaneMask<F> row_inside) {
     TexelLanes<format, F> a, b;
-    load_texel_pairs<format, F>(level.data, row, x.first, x.second, sampler.address_u == AddressMode::Wrap, a, b);
+    load_texel_pairs<format, F>(data, row, x.first, x.second, neighbours, a, b);
     if (border) {
         const TexelLanes<format, F> outside = broadcast_texel<format, F>(sampler.border);
         a = select_texel<format, F>(row_inside & x.first_inside, a, outside);
@@ -28,6 +28,8 @@ template <Format format, class F>
     }
     return lerp(a, b, spread_over_channels<format, F>(x.weight));
 }
+
+inline Neighbours neighbours_along(AddressMode mode) { return mode == AddressMode::Wrap ? Neighbours::Anywhere : Neighbours::Mostly; }
 
 // A slice of a level, filtered along x and y. `slice` is its first word.
 template <Format format, class F>
@@ -41,9 +43,14 @@ template <Format format, class F>
         return border ? select_texel<format, F>(x.inside & y.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel;
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, uv.x, level.width), y = linear_taps(sampler.address_v, uv.y, level.height);
-    const TexelLanes<format, F> first = filter_row<format, F>(sampler, level, slice + y.first * pitch, x, border, y.first_inside);
-    const TexelLanes<format, F> second = filter_row<format, F>(sampler, level, slice + y.second * pitch, x, border, y.second_inside);
-    return lerp(first, second, spread_over_channels<format, F>(y.weight));
+    const auto rows = [&](const std::byte* second_data, LaneUint<F> second_row, Neighbours neighbours) __attribute__((always_inline)) {
+        const TexelLanes<format, F> first = filter_row<format, F>(sampler, level.data, slice + y.first * pitch, x, neighbours, border, y.first_inside);
+        const TexelLanes<format, F> second = filter_row<format, F>(sampler, second_data, slice + second_row * pitch, x, neighbours, border, y.second_inside);
+        return lerp(first, second, spread_over_channels<format, F>(y.weight));
+    };
+    // Taking addresses out of lanes is what costs: where the second row is the next one in all of them, the first one's serve.
+    if (all((x.second == x.first + 1u) & (y.second == y.first + 1u))) return rows(level.data + pitch * sizeof(float), y.first, Neighbours::Always);
+    return rows(level.data, y.second, neighbours_along(sampler.address_u));
 }
 
 // A level of a 3D texture, filtered along x, y and z.
@@ -61,14 +68,20 @@ template <Format format, class F>
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, uvw.x, level.width), y = linear_taps(sampler.address_v, uvw.y, level.height);
     const LinearTaps<F> z = linear_taps(sampler.address_w, uvw.z, level.slices);
-    const LaneUint<F> y0 = y.first * pitch, y1 = y.second * pitch, z0 = z.first * slice_pitch, z1 = z.second * slice_pitch;
-    const auto row = [&](LaneUint<F> word, LaneMask<F> inside) __attribute__((always_inline)) {
-        return filter_row<format, F>(sampler, level, word, x, border, inside);
+    const LaneUint<F> y0 = y.first * pitch, z0 = z.first * slice_pitch;
+    // The row that is the second along y or z or both: `words` further for all lanes, and at y1, z1.
+    const auto rows = [&](unsigned y_words, unsigned z_words, LaneUint<F> y1, LaneUint<F> z1, Neighbours neighbours) __attribute__((always_inline)) {
+        const auto row = [&](unsigned words, LaneUint<F> word, LaneMask<F> inside) __attribute__((always_inline)) {
+            return filter_row<format, F>(sampler, level.data + words * sizeof(float), word, x, neighbours, border, inside);
+        };
+        const TexelLanes<format, F> y_weight = spread_over_channels<format, F>(y.weight);
+        const TexelLanes<format, F> front = lerp(row(0, z0 + y0, z.first_inside & y.first_inside), row(y_words, z0 + y1, z.first_inside & y.second_inside), y_weight);
+        const TexelLanes<format, F> back =
+            lerp(row(z_words, z1 + y0, z.second_inside & y.first_inside), row(y_words + z_words, z1 + y1, z.second_inside & y.second_inside), y_weight);
+        return lerp(front, back, spread_over_channels<format, F>(z.weight));
     };
-    const TexelLanes<format, F> y_weight = spread_over_channels<format, F>(y.weight);
-    const TexelLanes<format, F> front = lerp(row(z0 + y0, z.first_inside & y.first_inside), row(z0 + y1, z.first_inside & y.second_inside), y_weight);
-    const TexelLanes<format, F> back = lerp(row(z1 + y0, z.second_inside & y.first_inside), row(z1 + y1, z.second_inside & y.second_inside), y_weight);
-    return lerp(front, back, spread_over_channels<format, F>(z.weight));
+    if (all((x.second == x.first + 1u) & (y.second == y.first + 1u) & (z.second == z.first + 1u))) return rows(pitch, slice_pitch, y0, z0, Neighbours::Always);
+    return rows(0, 0, y.second * pitch, z.second * slice_pitch, neighbours_along(sampler.address_u));
 }
 
 // ---- levels

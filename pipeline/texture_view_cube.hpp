@@ -57,8 +57,8 @@ template <Format format, class F>
     const LaneMask<F> left = x < 0, right = x >= n - 1, top = y < 0, bottom = y >= n - 1;
     if (none(left | right | top | bottom)) {
         const U first = as_uint(x), row_start = (slice + as_uint(y) * pitch) * texel_words<format>;
-        load_texel_pairs<format, F>(level.data, row_start, first, first + 1u, false, a, b);
-        load_texel_pairs<format, F>(level.data, row_start + pitch * texel_words<format>, first, first + 1u, false, c, d);
+        load_texel_pairs<format, F>(level.data, row_start, first, first + 1u, Neighbours::Always, a, b);
+        load_texel_pairs<format, F>(level.data, row_start + pitch * texel_words<format>, first, first + 1u, Neighbours::Always, c, d);
     } else {
         a = load_texels<format, F>(level.data, seamless_texel<format, F>(level, face, x, y));
         b = load_texels<format, F>(level.data, seamless_texel<format, F>(level, face, x + 1, y));

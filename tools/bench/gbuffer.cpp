@@ -8,7 +8,7 @@ void run_gbuffer(const Bench& bench) {
     const int nu = bench.numbers("w1.nu", {720})[0], nv = bench.numbers("w1.nv", {348})[0], size = bench.numbers("w1.R", {1024})[0];
     const std::string parameters = "\"nu\":" + std::to_string(nu) + ",\"nv\":" + std::to_string(nv) + ",\"R\":" + std::to_string(size);
     const std::string workload = "w1_gbuffer", base = "mrt3_rgba32f_d32f";
-    if (!bench.wants(workload, base + "_cullback", parameters) && !bench.wants(workload, "frontend_only", parameters)) return;
+    if (!bench.wants(workload, base, parameters) && !bench.wants(workload, base + "_cullback", parameters) && !bench.wants(workload, "frontend_only", parameters)) return;
     const IndexedMesh mesh = displaced_sphere(nu, nv);
     const Buffer<GbufferInput<float>> vertices(mesh.vertices, "mesh vertices");
     const IndexBuffer indices(mesh.indices);

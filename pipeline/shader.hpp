@@ -20,6 +20,8 @@
 //                    and static constexpr Topology input, output; static constexpr int max_vertices
 //   pixel shader     vec4<F> or std::array<vec4<F>, n> or PixelOutput<F, n> or PixelDepthOutput<F, n>
 //                    operator()(const In<F>&)   or (const PixelInput<F>&) or (const In<F>&, const PixelInput<F>&)
+// A pixel shader runs for up to 16 groups of fragments in a row. Where its call operator is [[gnu::always_inline]], what flat
+// values alone determine is computed once for all groups of one primitive.
 #pragma once
 #include <array>
 #include <tuple>

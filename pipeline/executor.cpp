@@ -85,14 +85,19 @@ void Executor::run(int count, Call call, const void* context) {
         return;
     }
     if (warm_for < threads_) arena_->warm_up(threads_);
-    // One task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap.
-    std::atomic<int> next{0};
+    // One task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap. What the
+    // caller wrote before, workers see, and the other way round: said here in so many words, for those who read a program
+    // without its libraries, as thread checkers do.
+    std::atomic<int> next{0}, finished{0};
+    next.store(0, std::memory_order_release);
     arena_->arena.execute([&] {
         on_workers(threads_ < count ? threads_ : count, [&](int worker) {
             const FpEnvironment fp;
-            for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) call(context, i, worker);
+            for (int i; (i = next.fetch_add(1, std::memory_order_acq_rel)) < count;) call(context, i, worker);
+            finished.fetch_add(1, std::memory_order_release);
         });
     });
+    finished.load(std::memory_order_acquire);
 }
 
 #else

@@ -3,8 +3,8 @@
 //   out: groups of fragments, shaded and merged in that order
 //
 // Fragments are gathered into groups of one per lane. A large primitive fills groups by itself, in blocks of rows of four
-// pixels; the fragments of small ones are packed side by side. Which of the two a primitive takes, and how wide a group
-// is, changes nothing in what any fragment computes.
+// pixels, and with what blocks that it covers in part have, side by side; the fragments of small primitives are packed side
+// by side with each other's. Which of them a fragment takes, and how wide a group is, changes nothing in what it computes.
 #pragma once
 #include <algorithm>
 

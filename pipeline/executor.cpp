@@ -29,9 +29,19 @@ struct Workers {
     bool is_divisible() const { return end - first > 1; }
 };
 
+// What the caller wrote before, workers see, and the other way round: said here in so many words, for those who read a
+// program without its libraries, as thread checkers do.
 template <class Body>
 void on_workers(int count, const Body& body) {
-    tbb::parallel_for(Workers(0, count), [&](const Workers& w) { body(w.first); }, tbb::simple_partitioner{});
+    std::atomic<int> begun{0}, finished{0};
+    begun.store(1, std::memory_order_release);
+    const auto work = [&](const Workers& w) {
+        begun.load(std::memory_order_acquire);
+        body(w.first);
+        finished.fetch_add(1, std::memory_order_release);
+    };
+    tbb::parallel_for(Workers(0, count), work, tbb::simple_partitioner{});
+    finished.load(std::memory_order_acquire);
 }
 
 // The number of threads that the calling thread's pool is ready for.
@@ -85,19 +95,14 @@ void Executor::run(int count, Call call, const void* context) {
         return;
     }
     if (warm_for < threads_) arena_->warm_up(threads_);
-    // One task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap. What the
-    // caller wrote before, workers see, and the other way round: said here in so many words, for those who read a program
-    // without its libraries, as thread checkers do.
-    std::atomic<int> next{0}, finished{0};
-    next.store(0, std::memory_order_release);
+    // One task per worker; they draw the pieces from a counter. Few tasks, so that starting a pass stays cheap.
+    std::atomic<int> next{0};
     arena_->arena.execute([&] {
         on_workers(threads_ < count ? threads_ : count, [&](int worker) {
             const FpEnvironment fp;
-            for (int i; (i = next.fetch_add(1, std::memory_order_acq_rel)) < count;) call(context, i, worker);
-            finished.fetch_add(1, std::memory_order_release);
+            for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) call(context, i, worker);
         });
     });
-    finished.load(std::memory_order_acquire);
 }
 
 #else

@@ -47,24 +47,6 @@ inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const
     }
 }
 
-// Calls put(array, lanes) with each value of a vertex that the fixed-function stages keep an array of.
-template <class V, class Put>
-[[gnu::always_inline]] inline void for_each_system_value(const VertexArrays& arrays, const V& v, const Put& put) {
-    if constexpr (requires { v.position; }) {
-        if (arrays.position[0])
-            for (int c = 0; c < 4; ++c) put(arrays.position[c], v.position[c]);
-    }
-    if constexpr (requires { v.point_size; }) {
-        if (arrays.point_size) put(arrays.point_size, v.point_size);
-    }
-    if constexpr (requires { v.layer; }) {
-        if (arrays.layer) put(arrays.layer, v.layer);
-    }
-    if constexpr (requires { v.level; }) {
-        if (arrays.level) put(arrays.level, v.level);
-    }
-}
-
 template <class F, class V, int MaxVertices>
 inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>& emitted, const std::uint32_t* primitive_id, int active,
                              GeometryStreamWork& stream) {
@@ -111,11 +93,9 @@ void shade_primitives(GeometryWork& work) {
         std::tuple<Emissions<typename Out::template Vertex<s>, max_vertices>...> emissions;
         for (int i = 0; i < work.in.count; i += lanes) {
             const int active = work.in.count - i < lanes ? work.in.count - i : lanes;
-            const PrimitiveArrays& from = work.in;
             typename Types::Input in;
-            for (std::size_t c = 0; c < in.size(); ++c)
-                in[c] = gather_records<In>(work.records, from.in_order ? as_int(count_up<F>(0, i, from.count)) : load_lanes<LaneInt<F>>(from.corner[c] + i));
-            const LaneUint<F> primitive_id = from.numbered ? count_up<F>(from.first_id, i, from.count) : load_lanes<LaneUint<F>>(from.primitive_id + i);
+            for (std::size_t c = 0; c < in.size(); ++c) in[c] = gather_records<In>(work.records, corner_of<F>(work.in, c, i));
+            const LaneUint<F> primitive_id = ids_of<F>(work.in, i);
             alignas(64) std::uint32_t primitive_ids[lanes];
             store_lanes(primitive_ids, primitive_id);
             ((std::get<s>(emissions).count = 0), ...);

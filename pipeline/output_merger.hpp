@@ -111,8 +111,8 @@ struct MergeWork {
     std::ptrdiff_t pitch;
 };
 
-// One texel. `finite`: the colour is, so that only a NaN that is there already can come of it, and that is in its stored form.
-template <Format format, MergeMode mode, bool finite>
+// One texel.
+template <Format format, MergeMode mode>
 [[gnu::always_inline]] inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
     Color4 color;
     std::memcpy(&color, source, sizeof color);
@@ -121,18 +121,17 @@ template <Format format, MergeMode mode, bool finite>
         for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
     if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
     if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
-    if constexpr (format == Format::RGBA32F && finite) std::memcpy(at, &color, sizeof color);
-    else store_texel<format>(at, color);
+    store_texel<format>(at, color);
 }
 
-template <Format format, MergeMode mode, bool finite, class Texel>
+template <Format format, MergeMode mode, class Texel>
 [[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, const Texel& texel, const float* colors, std::uint32_t mask) {
     if ((mask & (mask + 1)) == 0) {  // all from the first lane on
-        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode, finite>(how, texel(l), colors + 4 * l);
+        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode>(how, texel(l), colors + 4 * l);
     } else {
         for (; mask; mask &= mask - 1) {
             const int l = __builtin_ctz(mask);
-            merge_texel<format, mode, finite>(how, texel(l), colors + 4 * l);
+            merge_texel<format, mode>(how, texel(l), colors + 4 * l);
         }
     }
 }
@@ -164,21 +163,12 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
         const FragmentGroup<lanes>& group = work.groups[g];
         std::uint32_t mask = work.masks[g];
         const float* r = work.results + g * work.result_stride;
-        const F color[4] = {load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes)};
         alignas(64) float colors[4 * lanes];
-        store_transposed4(colors, color[0], color[1], color[2], color[3]);
+        store_transposed4(colors, load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes));
         const auto texel = [&](int l) __attribute__((always_inline)) { return work.first_row + group.y[l] * work.pitch + group.x[l] * bytes_per_texel(format); };
         if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4)
             if (group.rows_of_four) mask = merge_rows_of_four<F, mode>(texel(0), work.pitch, colors, mask);
-        if (!mask) continue;
-        if constexpr (format == Format::RGBA32F && mode == MergeMode::Additive) {
-            constexpr float largest = 0x1.fffffep127f;
-            if (all((abs(color[0]) <= largest) & (abs(color[1]) <= largest) & (abs(color[2]) <= largest) & (abs(color[3]) <= largest))) {
-                merge_texels<format, mode, true>(how, texel, colors, mask);
-                continue;
-            }
-        }
-        merge_texels<format, mode, false>(how, texel, colors, mask);
+        merge_texels<format, mode>(how, texel, colors, mask);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "pipeline/edges.hpp"
+#include "pipeline/primitive_lanes.hpp"
 #include "pipeline/weight_planes.hpp"
 
 namespace nephroid {
@@ -55,7 +56,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
     for (int first = 0; first < batch.primitives.count; first += lanes) {
         const M active = first_lanes<F>(batch.primitives.count - first);
         I corner[3];
-        for (int c = 0; c < 3; ++c) corner[c] = load_lanes<I>(batch.primitives.corner[c] + first);
+        for (std::size_t c = 0; c < 3; ++c) corner[c] = corner_of<F>(batch.primitives, c, first);
 
         // Project. Lanes beyond the last primitive repeat valid vertices (the arrays are padded).
         M clean = active;
@@ -182,8 +183,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
             depth0 = z0 + load_lanes<F>(bias);
         }
 
-        const PrimitiveArrays& from = batch.primitives;
-        const I primitive_id = from.numbered ? lane_index<F>() + I(static_cast<std::int32_t>(from.first_id + static_cast<unsigned>(first))) : load_lanes<I>(from.primitive_id + first);
+        const I primitive_id = as_int(ids_of<F>(batch.primitives, first));
         // Write the records side by side, in order; lanes that are not drawn go to the place behind the last.
         std::int32_t offset[lanes];
         int at = batch.record_count;
@@ -217,9 +217,8 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
 
     for (int first = 0; first < batch.primitives.count; first += lanes) {
         const M active = first_lanes<F>(batch.primitives.count - first);
-        const PrimitiveArrays& from = batch.primitives;
-        const I vertex = from.in_order ? lane_index<F>() + first : load_lanes<I>(from.corner[0] + first);
-        const auto of_vertex = [&](const float* array) { return from.in_order ? load_lanes<F>(array + first) : gather(array, vertex); };
+        const I vertex = corner_of<F>(batch.primitives, 0, first);
+        const auto of_vertex = [&](const float* array) { return batch.primitives.in_order ? load_lanes<F>(array + first) : gather(array, vertex); };
         M drawn = active;
         const I target_index = one_target && !vertices.layer && !vertices.level ? I(0) : lane_target<F>(draw, batch, vertex, drawn);
         const LaneViewport<F> viewport = one_target ? LaneViewport<F>{F(draw.targets->scale_x), F(draw.targets->offset_x), F(draw.targets->scale_y), F(draw.targets->offset_y)}
@@ -260,7 +259,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         const std::uint32_t drawn_bits = mask_bits(drawn);
         if (!drawn_bits) continue;
 
-        const I primitive_id = from.numbered ? lane_index<F>() + I(static_cast<std::int32_t>(from.first_id + static_cast<unsigned>(first))) : load_lanes<I>(from.primitive_id + first);
+        const I primitive_id = as_int(ids_of<F>(batch.primitives, first));
         std::int32_t offset[lanes];
         int at = batch.record_count;
         for (int l = 0; l < lanes; ++l) offset[l] = (drawn_bits >> l & 1u ? at++ : draw.record_capacity) * static_cast<int>(sizeof(PointRecord) / 4);

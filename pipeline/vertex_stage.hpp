@@ -4,7 +4,7 @@
 #pragma once
 #include <cstring>
 
-#include "pipeline/kernel_interface.hpp"
+#include "pipeline/primitive_lanes.hpp"
 #include "pipeline/program.hpp"
 
 namespace nephroid {
@@ -56,28 +56,22 @@ inline void store_records(std::byte* records, const std::int32_t* offset, const 
     }
 }
 
-// What the fixed-function stages need of a vertex, to places [at, at + lanes) of its arrays.
-template <class V>
-inline void store_system_values(const VertexArrays& out, int at, const V& v) {
+// Calls put(array, lanes) with each value of a vertex that the fixed-function stages keep an array of.
+template <class V, class Put>
+[[gnu::always_inline]] inline void for_each_system_value(const VertexArrays& arrays, const V& v, const Put& put) {
     if constexpr (requires { v.position; }) {
-        if (out.position[0])
-            for (int c = 0; c < 4; ++c) store_lanes(out.position[c] + at, v.position[c]);
+        if (arrays.position[0])
+            for (int c = 0; c < 4; ++c) put(arrays.position[c], v.position[c]);
     }
     if constexpr (requires { v.point_size; }) {
-        if (out.point_size) store_lanes(out.point_size + at, v.point_size);
+        if (arrays.point_size) put(arrays.point_size, v.point_size);
     }
     if constexpr (requires { v.layer; }) {
-        if (out.layer) store_lanes(out.layer + at, v.layer);
+        if (arrays.layer) put(arrays.layer, v.layer);
     }
     if constexpr (requires { v.level; }) {
-        if (out.level) store_lanes(out.level + at, v.level);
+        if (arrays.level) put(arrays.level, v.level);
     }
-}
-
-// first, first + 1, ...: those of the lanes from number `at` on, of `count` in all; lanes beyond repeat the last.
-template <class F>
-inline LaneUint<F> count_up(std::uint32_t first, int at, int count) {
-    return LaneUint<F>(first) + as_uint(min(lane_index<F>() + LaneInt<F>(at), LaneInt<F>(count - 1)));
 }
 
 template <class F, class VS>
@@ -100,7 +94,7 @@ void shade_vertices(const VertexWork& work) {
             if constexpr (SignatureOf<VS, F>::template takes<VertexIds<F>>) out = shader.template operator()<F>(in, ids);
             else out = shader.template operator()<F>(in);
         }
-        store_system_values(work.out, i, out);
+        for_each_system_value(work.out, out, [i](auto* array, const auto& value) { store_lanes(array + i, value); });
         if (work.out.records) store_records(work.out.records + static_cast<std::size_t>(i) * component_count<Out> * 4, offset, out);
     }
 }

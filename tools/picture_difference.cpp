@@ -7,16 +7,11 @@
 #include <stdexcept>
 
 #include "pipeline/srgb.hpp"
+#include "tools/joined.hpp"
 
 namespace nephroid {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
-    return text;
-}
 
 // Calls work(pixel's index, its first value's index) for what is compared, row by row.
 template <class Work> void for_each_compared(const PictureData& picture, const PixelMask& mask, const Work& work) {

@@ -4,17 +4,12 @@
 
 #include "stages/frame_plan.hpp"
 #include "tools/commands.hpp"
+#include "tools/joined.hpp"
 #include "tools/render_options.hpp"
 
 namespace nephroid {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
-    return text;
-}
 
 void run(RenderOptions& options) {
     Device device({.threads = options.threads, .lanes = options.lanes});

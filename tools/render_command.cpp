@@ -11,6 +11,7 @@
 #include "tools/picture_file.hpp"
 #include "tools/progress.hpp"
 #include "tools/render_options.hpp"
+#include "tools/throw_faults.hpp"
 #include "tools/whole_file.hpp"
 
 namespace nephroid {
@@ -26,13 +27,6 @@ struct RenderArguments {
 };
 
 double now_ms() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-void check(const Faults& faults) {
-    if (faults.empty()) return;
-    char text[4096];
-    faults.format(text, sizeof text);
-    throw std::runtime_error(text);
-}
 
 // "A:B", or nothing for a single picture.
 bool parse_frames(const std::string& text, int& first, int& last) {
@@ -124,7 +118,7 @@ void run(RenderArguments& a) {
     FrameTimes times;
     const double load_start = now_ms();
     Device device({.threads = a.options.threads, .lanes = a.options.lanes});
-    check(device.faults());
+    throw_faults(device.faults());
     const scenes::Scene scene = load_for_render(a.options);
     a.options.finish(scene);
     a.options.settings.leave_out = !a.keep_idle;
@@ -138,7 +132,7 @@ void run(RenderArguments& a) {
 
     const double prepare_start = now_ms();
     stages::Renderer renderer(device, built.world, a.options.settings);
-    check(renderer.faults());
+    throw_faults(renderer.faults());
     times.prepare_ms = now_ms() - prepare_start;
     Progress progress;
     std::string progress_prefix;
@@ -160,7 +154,7 @@ void run(RenderArguments& a) {
         }
         for (int r = 0; r < a.runs; ++r) {
             const double start = now_ms();
-            check(renderer.render());
+            throw_faults(renderer.render());
             times.render_ms.push_back(now_ms() - start + (times.render_ms.empty() ? times.prepare_ms : 0));
         }
         const double write_start = now_ms();

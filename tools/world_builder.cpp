@@ -9,6 +9,7 @@
 #include "pipeline/math.hpp"
 #include "pipeline/mipmaps.hpp"
 #include "pipeline/srgb.hpp"
+#include "tools/throw_faults.hpp"
 
 namespace nephroid {
 
@@ -110,16 +111,9 @@ stages::Mesh build_mesh(const scenes::Mesh& m, const scenes::Scene& scene, const
     return r;
 }
 
-void check(const Faults& faults) {
-    if (faults.empty()) return;
-    char text[1024];
-    faults.format(text, sizeof text);
-    throw std::runtime_error(text);
-}
-
 Texture build_texture(Device& device, const scenes::Image& image) {
     Texture t({.format = Format::RGBA8Srgb, .width = image.width, .height = image.height, .mip_levels = 0, .name = "base colour texture"});
-    check(t.faults());
+    throw_faults(t.faults());
     if (!image.srgb8.empty()) {
         t.upload(image.srgb8.data());
     } else {
@@ -127,7 +121,7 @@ Texture build_texture(Device& device, const scenes::Image& image) {
         for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = i % 4 == 3 ? 255 : linear_to_srgb(image.linear[i]);
         t.upload(bytes.data());
     }
-    check(generate_mips(device, t));
+    throw_faults(generate_mips(device, t));
     return t;
 }
 
@@ -179,7 +173,7 @@ BuiltWorld build_world(Device& device, const scenes::Scene& scene) {
     }
     if (!scene.environment.linear.empty()) {
         world.environment = Texture({.format = Format::RGBA32F, .width = scene.environment.width, .height = scene.environment.height, .name = "environment"});
-        check(world.environment.faults());
+        throw_faults(world.environment.faults());
         world.environment.upload(scene.environment.linear.data());
     }
     return built;

@@ -2,13 +2,13 @@
 
 #include <initializer_list>
 
-#if NEPHROID_ISA_AVX2
+#if NEPHROID_ISA_AVX2 || NEPHROID_ISA_AVX512
 #include <cpuid.h>
 #endif
 
 namespace nephroid {
 
-#if NEPHROID_ISA_AVX2
+#if NEPHROID_ISA_AVX2 || NEPHROID_ISA_AVX512
 namespace {
 // Half-float conversions: a bit that Clang's __builtin_cpu_supports does not know.
 bool has_f16c() {
@@ -36,7 +36,7 @@ bool isa_available(Isa isa) {
         case Isa::Avx512:
 #if NEPHROID_ISA_AVX512
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                   __builtin_cpu_supports("avx512vl");
+                   __builtin_cpu_supports("avx512vl") && has_f16c();
 #else
             return false;
 #endif

@@ -10,7 +10,7 @@ enum class Isa : int {
     Scalar,  // 1 lane, plain float: the one to step through
     Sse42,   // 4 lanes, x86-64 with SSE4.2
     Avx2,    // 8 lanes, x86-64 with AVX2 and F16C
-    Avx512,  // 16 lanes, x86-64 with AVX-512 F, BW, DQ, VL
+    Avx512,  // 16 lanes, x86-64 with AVX-512 F, BW, DQ, VL and F16C
     Neon,    // 4 lanes, aarch64
 };
 inline constexpr int isa_count = 5;

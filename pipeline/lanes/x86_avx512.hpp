@@ -1,4 +1,4 @@
-// Sixteen lanes on AVX-512 (F, BW, DQ, VL).
+// Sixteen lanes on AVX-512 (F, BW, DQ, VL) and F16C.
 #pragma once
 #include <immintrin.h>
 

@@ -1,12 +1,12 @@
 #include "scene_hash.hpp"
 
 #include <optional>
-#include <stdexcept>
 #include <vector>
 
 #include "scenes/bundled.hpp"
 #include "sha1.hpp"
 #include "stages/renderer.hpp"
+#include "tools/throw_faults.hpp"
 #include "tools/world_builder.hpp"
 
 namespace test {
@@ -14,13 +14,6 @@ namespace test {
 using namespace nephroid;
 
 namespace {
-
-void check(const Faults& faults) {
-    if (faults.empty()) return;
-    char text[1024];
-    faults.format(text, sizeof text);
-    throw std::runtime_error(text);
-}
 
 // The pixels of the picture as a float EXR file has them: R, G, B, row 0 at the top.
 std::string hash_of_picture(const stages::Picture& terms) {
@@ -47,10 +40,10 @@ std::string hash_of_scene(Device& device, std::string_view name, const Around& a
     settings.photons = settings.map_size = 64;
     std::optional<stages::Renderer> renderer;
     around([&] { renderer.emplace(device, built.world, settings); });
-    check(renderer->faults());
+    throw_faults(renderer->faults());
     Faults faults;
     around([&] { faults = renderer->render(); });
-    check(faults);
+    throw_faults(faults);
     return hash_of_picture(renderer->picture());
 }
 

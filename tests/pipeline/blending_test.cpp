@@ -236,3 +236,31 @@ TEST_CASE("NaN and infinity through the blender") {
         for (const BlendState& blend : {blend_opaque, blend_additive, blend_alpha, blend_min, blend_max}) check_shapes(shapes, {format}, {blend}, glm::vec4(0), "specials");
     for (const Format format : {Format::RGBA8, Format::RGBA8Srgb}) check_shapes(shapes, {format}, {blend_opaque}, glm::vec4(0), "specials");
 }
+
+TEST_CASE("a NaN with a payload that was uploaded becomes the one NaN where a fragment is added to it, whatever else is drawn with it") {
+    // Fragments in one group with an infinite one, or with finite ones alone; single texels (points) and whole rows (a triangle).
+    const std::uint32_t payload = 0xffc01234u, stored = 0x7fc00000u;
+    const int size = 16;
+    for (const float other : {1.0f, INFINITY}) {
+        std::vector<RoutedVertex<float>> points;
+        for (int x = 0; x < size; ++x) points.push_back({clip_position({0, 0, size, size}, {x * 256 + 128, 3 * 256 + 128}), glm::vec4(x == 5 ? other : 1.0f), 1.0f, 0, 0});
+        std::vector<RoutedVertex<float>> triangle;
+        for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(-1, 3), glm::vec2(3, -1)}) triangle.push_back({glm::vec4(corner, 0.5f, 1), glm::vec4(other), 1.0f, 0, 0});
+        for (const bool whole : {false, true}) {
+            PipelineState state = counting_state();
+            state.topology = whole ? Topology::TriangleList : Topology::PointList;
+            const Buffer<RoutedVertex<float>> buffer(whole ? triangle : points);
+            for (const int lanes : lane_widths()) {
+                Texture target = make_target(Format::RGBA32F, size, size);
+                const std::vector<std::uint32_t> before(std::size_t{4} * size * size, payload);
+                target.upload(before.data());
+                statistics_of(device(lanes).draw(routed_program(), state, {.vertices = buffer, .render_targets = {target.mip()}}));
+                std::vector<std::uint32_t> after(before.size());
+                target.download(after.data());
+                int wrong = 0;
+                for (int k = 0; k < 4 * size * size; ++k) wrong += after[static_cast<std::size_t>(k)] != (whole || k / (4 * size) == 3 ? stored : payload);
+                CHECK_MESSAGE(wrong == 0, wrong, " values, beside ", other, ", ", whole ? "triangle" : "points", ", ", lanes, " lanes");
+            }
+        }
+    }
+}

@@ -23,7 +23,7 @@ void run_beams(const Bench& bench) {
             state.rasterizer.cull = CullMode::Front;
             state.rasterizer.discard = variant == "frontend_only";
             const Stage stage{"beams", [&] {
-                                  checked(device.clear(target.mip(), glm::vec4(0.0f)));
+                                  throw_faults(device.clear(target.mip(), glm::vec4(0.0f)));
                                   return checked(device.draw(program, state, {.vertices = buffer, .render_targets = {target.mip()}}));
                               }};
             bench.measure(workload, variant, parameters, {stage}, {{"gs_triangles", 8.0 * count}});

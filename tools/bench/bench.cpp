@@ -121,14 +121,8 @@ void Bench::dump(const std::string& name, const Texture& texture) const {
     dump(name, out.data(), width, height, channels);
 }
 
-void checked(const Faults& faults) {
-    if (faults.empty()) return;
-    char text[2048];
-    faults.format(text, sizeof text);
-    throw std::runtime_error(text);
-}
 PipelineStatistics checked(const DrawResult& result) {
-    checked(result.faults);
+    throw_faults(result.faults);
     return result.statistics;
 }
 
@@ -143,7 +137,7 @@ glm::mat4 gl_matrix(const std::array<float, 16>& m) {
 
 void run(const Options& options) {
     Device device({.threads = options.threads, .lanes = options.lanes});
-    checked(device.faults());
+    throw_faults(device.faults());
     const Bench bench(options, device);
     std::printf("{\"env\":{\"renderer\":\"nephroid\",\"isa\":\"%s\",\"lanes\":%d,\"threads\":%d}}\n", name_of(device.isa()), lane_count(device.isa()), device.threads());
     run_gbuffer(bench);

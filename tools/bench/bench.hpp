@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/device.hpp"
+#include "tools/throw_faults.hpp"
 
 namespace nephroid::bench {
 
@@ -59,7 +60,6 @@ private:
 
 // Adds up the statistics of draws; a draw with faults ends the program with its line.
 PipelineStatistics checked(const DrawResult& result);
-void checked(const Faults& faults);
 
 // From OpenGL's clip space to the pipeline's: y changes its sign, z' = (z + w) / 2. `m` is column-major.
 glm::mat4 gl_matrix(const std::array<float, 16>& m);

@@ -26,8 +26,8 @@ void run_gbuffer(const Bench& bench) {
         state.rasterizer.cull = variant == base + "_cullback" ? CullMode::Back : CullMode::None;
         state.rasterizer.discard = variant == "frontend_only";
         const Stage stage{"gbuffer", [&, state] {
-                              for (const Texture& t : targets) checked(device.clear(t.mip(), glm::vec4(0.0f)));
-                              checked(device.clear(depth.mip(), glm::vec4(1.0f)));
+                              for (const Texture& t : targets) throw_faults(device.clear(t.mip(), glm::vec4(0.0f)));
+                              throw_faults(device.clear(depth.mip(), glm::vec4(1.0f)));
                               return checked(device.draw(program, state, {.vertices = vertices, .indices = &indices,
                                                                           .render_targets = {targets[0].mip(), targets[1].mip(), targets[2].mip()}, .depth_target = depth.mip()}));
                           }};

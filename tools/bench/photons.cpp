@@ -23,7 +23,7 @@ double count_valid(const std::vector<float>& photons) {
 }
 Texture upload(const std::vector<float>& texels, int size) {
     Texture t({.format = Format::RGBA32F, .width = size, .height = size, .name = "photons"});
-    checked(t.faults());
+    throw_faults(t.faults());
     t.upload(texels.data());
     return t;
 }
@@ -60,7 +60,7 @@ void run_photon_splat(const Bench& bench) {
             PipelineState state = splat_state(gaussian ? 5.0f : 1.0f);
             state.rasterizer.discard = variant == "frontend_only";
             const Stage stage{"splat", [&] {
-                                  checked(device.clear(map.mip(), glm::vec4(0.0f)));
+                                  throw_faults(device.clear(map.mip(), glm::vec4(0.0f)));
                                   const DrawCall call{.vertices = vertex_count(std::int64_t{side} * side), .render_targets = {map.mip()}};
                                   return checked(gaussian ? device.draw(gauss, state, call) : device.draw(point, state, call));
                               }};
@@ -120,7 +120,7 @@ void run_hierarchical(const Bench& bench) {
             return sum;
         };
         const auto splat = [&](bool gaussian) {
-            checked(device.clear(map.mip(), glm::vec4(0.0f)));
+            throw_faults(device.clear(map.mip(), glm::vec4(0.0f)));
             const DrawCall call{.vertices = streamed(records), .render_targets = {map.mip()}};
             const ProjectRecord project{gl_matrix(photon_matrix)};
             return checked(gaussian ? device.draw(Program{project, DepositRecordGauss{}}, splat_state(5.0f), call) : device.draw(Program{project, DepositRecord{}}, splat_state(1.0f), call));
@@ -168,7 +168,7 @@ void run_mip_splat(const Bench& bench) {
         if (bench.wants(workload, "layers4", parameters) || bench.wants(workload, "clear_layers_only", parameters)) {
             const Texture layers({.format = Format::RGBA32F, .width = map_size, .height = map_size, .layers = level_count, .kind = TextureKind::Texture2DArray, .name = "caustic map layers"});
             const auto clear = [&] {
-                checked(device.clear(layers.all(), glm::vec4(0.0f)));
+                throw_faults(device.clear(layers.all(), glm::vec4(0.0f)));
                 return PipelineStatistics{};
             };
             const auto splat = [&] {
@@ -188,7 +188,7 @@ void run_mip_splat(const Bench& bench) {
         if (bench.wants(workload, "mips4", parameters)) {
             const Texture levels({.format = Format::RGBA32F, .width = map_size, .height = map_size, .mip_levels = level_count, .name = "caustic map levels"});
             const auto splat = [&] {
-                checked(device.clear(levels.all(), glm::vec4(0.0f)));
+                throw_faults(device.clear(levels.all(), glm::vec4(0.0f)));
                 return draw_to(Program{SizeSplatLevels{size}, ToLevel{}, DepositLevel{}}, splat_state(1.0f), all_photons, levels.all());
             };
             const auto resolve = [&] { return draw_to(Program{CoverScreen{}, ResolveLevels{levels, static_cast<float>(map_size)}}, resolve_state, {.vertices = vertex_count(3)}, map.mip()); };
@@ -197,7 +197,7 @@ void run_mip_splat(const Bench& bench) {
         }
         if (bench.wants(workload, "single", parameters)) {
             const auto splat = [&] {
-                checked(device.clear(map.mip(), glm::vec4(0.0f)));
+                throw_faults(device.clear(map.mip(), glm::vec4(0.0f)));
                 return draw_to(Program{SizeSplatSingle{size}, DepositSingle{}}, splat_state(1.0f), all_photons, map.mip());
             };
             bench.measure(workload, "single", parameters, {{"splat", splat}}, counters);

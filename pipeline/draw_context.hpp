@@ -17,13 +17,14 @@
 namespace nephroid {
 
 inline constexpr int vertex_table_size = 4096;  // entries of the table that finds a batch's shared vertices
-inline constexpr int tile_bits = 6;
+inline constexpr int tile_bits = 7;
 inline constexpr int tile_size = 1 << tile_bits;  // pixels along an edge
 inline constexpr int subpixel_bits = 8;    // vertices are snapped to 1/256 pixel
 inline constexpr int subpixels = 1 << subpixel_bits;
 // Screen positions beyond the largest target by this much are clipped; edges then fit 23 bits of subpixels, and edge
 // functions within a tile fit 32.
 inline constexpr int guard_band = 8192;
+static_assert((std::int64_t{max_texture_size + 2 * guard_band} * subpixels * (tile_size - 1) * 2) < (std::int64_t{1} << 31));
 inline constexpr float guard_low = -guard_band, guard_high = max_texture_size + guard_band;
 // Behind the eye is outside; so small a w that it has lost its precision, and its reciprocal may overflow, is too.
 inline constexpr float smallest_w = 0x1p-126f;

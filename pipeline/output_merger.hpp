@@ -3,6 +3,7 @@
 // Fragments are merged one after another, so that those of one pixel meet it in primitive order; where no two of a group
 // can share a pixel the depth test works on all lanes at once. A NaN is stored as 0x7fc00000.
 #pragma once
+#include <algorithm>
 #include <cstring>
 
 #include "pipeline/draw_context.hpp"
@@ -31,7 +32,7 @@ template <class F>
 inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& target, const FragmentGroup<lanes_of<F>>& group, const float* depth, std::uint32_t mask,
                                 PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
-    if (lanes > 1 && group.rows_of_four) {
+    if (lanes > 1 && group.layout == Layout::RowsOfFour) {
         std::byte* first = target.depth + group.y[0] * target.depth_pitch + group.x[0] * 4;
         const F value = load_lanes<F>(depth), stored = load_rows_of_four(first, target.depth_pitch, static_cast<F*>(nullptr));
         const LaneMask<F> pass = passes<F>(state.test, value, stored) & mask_from_bits<F>(mask);
@@ -136,38 +137,109 @@ template <Format format, MergeMode mode, class Texel>
     }
 }
 
-// Rows of four neighbours that are drawn whole: where a texel is what a colour is, one operation serves as many of them as
-// fit into a register. Only for blocks, which lie on a grid: a load that takes parts of several stores, as those of points
-// side by side would, waits until these have reached the cache. Returns what is left to do.
+// ---- several texels at a time
+//
+// Where a texel is what a colour is, an RGBA32F one, a register holds as many of them as it has lanes for: its span. Spans are
+// read and written whole, at multiples of their size and whatever of them is drawn: what one point's span has stored the next
+// one's then finds on its way to the cache. A load that takes parts of several stores, as those of single texels would be,
+// waits until these have reached it.
+
+template <class F> inline constexpr int span_of = lanes_of<F> / 4;
+
+// The span at `at`, as far as its lanes are drawn: a bit per channel of each texel. `colors` has all of it, used or not.
+// No branches: whatever depends on where a point lies would be guessed wrong.
 template <class F, MergeMode mode>
-[[gnu::always_inline]] inline std::uint32_t merge_rows_of_four(std::byte* first, std::ptrdiff_t pitch, const float* colors, std::uint32_t mask) {
-    constexpr int lanes = lanes_of<F>;
-    for (int l = 0; l < lanes; l += 4) {
-        if ((mask >> l & 15u) != 15u) continue;
-        for (int part = 0; part < 16; part += lanes) {
-            std::byte* at = first + (l / 4) * pitch + part * 4;
-            F color = load_lanes<F>(colors + 4 * l + part);
-            if constexpr (mode == MergeMode::Additive) color = color + load_lanes<F>(at);
-            store_lanes(at, select(is_nan(color), F(canonical_nan), color));
+[[gnu::always_inline]] inline void merge_span(std::byte* at, const float* colors, std::uint32_t drawn) {
+    const F before = load_lanes<F>(at);
+    F color = load_lanes<F>(colors);
+    if constexpr (mode == MergeMode::Additive) color = color + before;
+    color = select(is_nan(color), F(canonical_nan), color);
+    store_lanes(at, select(mask_from_bits<F>(drawn), color, before));
+}
+
+// Rows of four neighbours.
+template <class F, MergeMode mode>
+[[gnu::always_inline]] inline void merge_rows_of_four(std::byte* first, std::ptrdiff_t pitch, const float* colors, std::uint32_t mask) {
+    // From a bit per texel to one per channel.
+    static constexpr std::uint16_t channels[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f, 0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff, 0xff00, 0xff0f, 0xfff0, 0xffff};
+    constexpr std::uint32_t all = (1u << span_of<F>) - 1u;
+    for (int l = 0; l < lanes_of<F>; l += span_of<F>)
+        if (const std::uint32_t drawn = mask >> l & all) merge_span<F, mode>(first + l / 4 * pitch + l % 4 * 16, colors + 4 * l, channels[drawn]);
+}
+
+// `rows` rows of the texels [x, end), `colors` beginning at x. Texels of a row beyond it are read and written back.
+template <class F, MergeMode mode>
+[[gnu::always_inline]] inline void merge_rows(std::byte* row, std::ptrdiff_t pitch, int x, int end, int rows, const float* colors) {
+    constexpr int span = span_of<F>;
+    const int first = x & -span, last = (end - 1) & -span, width = end - x;
+    const std::uint32_t at_end = (2u << (4 * (end - 1 - last) + 3)) - 1u, at_first = ~0u << 4 * (x - first);
+    colors += 4 * (first - x);
+    for (row += first * 16; rows > 0; --rows, row += pitch, colors += 4 * width) {
+        if (first == last) {
+            merge_span<F, mode>(row, colors, at_first & at_end);
+            continue;
         }
-        mask &= ~(15u << l);
+        merge_span<F, mode>(row, colors, at_first);
+        int on = span;
+        for (; on < last - first; on += span) merge_span<F, mode>(row + on * 16, colors + 4 * on, ~0u);
+        merge_span<F, mode>(row + on * 16, colors + 4 * on, at_end);
     }
-    return mask;
+}
+
+// The first `count` fragments of a rectangle from (x, y) on.
+template <class F, MergeMode mode>
+[[gnu::always_inline]] inline void merge_rectangle(std::byte* first_row, std::ptrdiff_t pitch, int left, int right, int x, int y, const float* colors, int count) {
+    const int width = right - left;
+    const auto merge = [&](int from, int end, int rows) {
+        merge_rows<F, mode>(first_row + y * pitch, pitch, from, end, rows, colors);
+        const int merged = (end - from) * rows;
+        colors += 4 * merged, count -= merged, y += rows;
+    };
+    if (x != left) merge(x, std::min(right, x + count), 1);
+    if (count >= width) merge(left, right, count / width);
+    if (count > 0) merge(left, left + count, 1);
+}
+
+// True if group `b` goes on in the rectangle where `a`, all of whose lanes are drawn, ends.
+template <int N>
+inline bool goes_on(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
+    if (b.layout != Layout::Rectangle || b.left != a.left || b.right != a.right) return false;
+    return b.x[0] == a.x[N - 1] + 1 ? b.y[0] == a.y[N - 1] : b.x[0] == b.left && a.x[N - 1] + 1 == a.right && b.y[0] == a.y[N - 1] + 1;
 }
 
 // The groups' colours into one target.
 template <class F, Format format, MergeMode mode>
 void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
     constexpr int lanes = lanes_of<F>;
+    constexpr bool has_spans = format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4;
+    // Texel after texel; round them what a span may read too much.
+    alignas(64) float colors_and_more[4 * lanes * groups_per_flush + 2 * lanes];
+    float* const all_colors = colors_and_more + lanes;
+    store_lanes(colors_and_more, F(0.0f));
+    store_lanes(all_colors + 4 * lanes * work.count, F(0.0f));
+    for (int g = 0; g < work.count; ++g) {
+        const float* r = work.results + g * work.result_stride;
+        store_transposed4(all_colors + 4 * lanes * g, load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes));
+    }
+    const bool aligned = has_spans && work.pitch % (4 * lanes) == 0 && reinterpret_cast<std::uintptr_t>(work.first_row) % (4 * lanes) == 0;
     for (int g = 0; g < work.count; ++g) {
         const FragmentGroup<lanes>& group = work.groups[g];
-        std::uint32_t mask = work.masks[g];
-        const float* r = work.results + g * work.result_stride;
-        alignas(64) float colors[4 * lanes];
-        store_transposed4(colors, load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes));
+        const std::uint32_t mask = work.masks[g];
+        const float* colors = all_colors + 4 * lanes * g;
         const auto texel = [&](int l) __attribute__((always_inline)) { return work.first_row + group.y[l] * work.pitch + group.x[l] * bytes_per_texel(format); };
-        if constexpr (format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4)
-            if (group.rows_of_four) mask = merge_rows_of_four<F, mode>(texel(0), work.pitch, colors, mask);
+        if constexpr (has_spans) {
+            if (group.layout == Layout::RowsOfFour) {
+                merge_rows_of_four<F, mode>(texel(0), work.pitch, colors, mask);
+                continue;
+            }
+            if (group.layout == Layout::Rectangle && aligned && (mask & (mask + 1)) == 0) {
+                int count = __builtin_popcount(mask);
+                for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && (work.masks[g + 1] & (work.masks[g + 1] + 1)) == 0; ++g)
+                    count += __builtin_popcount(work.masks[g + 1]);
+                merge_rectangle<F, mode>(work.first_row, work.pitch, group.left, group.right, group.x[0], group.y[0], colors, count);
+                continue;
+            }
+        }
         merge_texels<format, mode>(how, texel, colors, mask);
     }
 }

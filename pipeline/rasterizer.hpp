@@ -181,7 +181,7 @@ private:
     // A block of one triangle, in rows of four.
     void add_block(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.rows_of_four = whole_rows(x, y);
+        g.layout = whole_rows(x, y) ? Layout::RowsOfFour : Layout::Loose;
         add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
     }
 
@@ -194,7 +194,7 @@ private:
     }
     void add_loose_group(const TriangleRecord& r, const std::int32_t* xy, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.rows_of_four = false;
+        g.layout = Layout::Loose;
         // Idle lanes stand on the first one's pixel.
         const I at = select(mask_from_bits<F>(mask), load_lanes<I>(xy), I(xy[0]));
         add_triangle_group(r, at & 0xffff, at >> 16, mask);
@@ -269,9 +269,12 @@ private:
     void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
         if (width != dense_width_) lay_out_dense(width);
         I x = dense_x_, y = dense_y_;
+        const float inverse_size = 1.0f / r.size;
         for (int remaining = width * height; remaining > 0; remaining -= lanes) {
-            groups_[count_].rows_of_four = false;
-            add_splat(r, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
+            Group& g = groups_[count_];
+            g.layout = Layout::Rectangle;
+            g.left = left, g.right = left + width;
+            add_splat(r, inverse_size, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
             x = x + dense_columns_on_;
             const M next_row = x >= width;
             x = select(next_row, x - width, x);
@@ -289,22 +292,23 @@ private:
     }
 
     void draw_point_blocks(const PointRecord& r, int left, int top, int right, int bottom) {
+        const float inverse_size = 1.0f / r.size;
         for (int y = top & -block_height; y <= bottom; y += block_height) {
             for (int x = left & -block_width; x <= right; x += block_width) {
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
                 Group& g = groups_[count_];
-                g.rows_of_four = whole_rows(x, y);
-                add_splat(r, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
+                g.layout = whole_rows(x, y) ? Layout::RowsOfFour : Layout::Loose;
+                add_splat(r, inverse_size, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
     }
 
-    void add_splat(const PointRecord& r, I px, I py, std::uint32_t mask) {
+    void add_splat(const PointRecord& r, float inverse_size, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
         g.uniform = g.constant = true;
         store_lanes(g.x, px);
         store_lanes(g.y, py);
-        place_in_point(g, px, py, F(r.x), F(r.y), F(1.0f / r.size), F(r.z), F(r.w));
+        place_in_point(g, px, py, F(r.x), F(r.y), F(inverse_size), F(r.z), F(r.w));
         if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
@@ -377,7 +381,7 @@ private:
         Group& g = groups_[count_];
         g.uniform = true;
         g.constant = false;
-        g.rows_of_four = false;
+        g.layout = Layout::Loose;
         const float length = static_cast<float>(steep ? r.y[1] - r.y[0] : r.x[1] - r.x[0]);
         const float way = static_cast<float>((steep ? y : x) * subpixels + subpixels / 2 - (steep ? r.y[0] : r.x[0]));
         const float t = min(max(way / length, 0.0f), 1.0f);
@@ -421,7 +425,7 @@ private:
         packed_ = 0;
         g.uniform = false;
         g.constant = draw_.raster_topology == Topology::PointList;
-        g.rows_of_four = false;
+        g.layout = Layout::Loose;
         const I record = load_lanes<I>(packed_record_), px = load_lanes<I>(g.x), py = load_lanes<I>(g.y);
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);
         const auto store_word = [](std::uint32_t* to, F word) { store_lanes(to, float_bits(word)); };
@@ -484,7 +488,14 @@ private:
             const std::ptrdiff_t pitch = target_.color_pitch[t], texel_bytes = draw_.color[t].texel_bytes;
             for (int g = 0; g < count_; ++g) {
                 const Group& group = groups_[g];
-                for (int l = 0; l < lanes; l += group.rows_of_four ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
+                if (group.layout == Layout::Rectangle) {
+                    for (int y = group.y[0]; y <= group.y[lanes - 1]; ++y) {
+                        __builtin_prefetch(first + y * pitch + group.left * texel_bytes, 1);
+                        __builtin_prefetch(first + y * pitch + (group.right - 1) * texel_bytes, 1);
+                    }
+                } else {
+                    for (int l = 0; l < lanes; l += group.layout == Layout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
+                }
             }
         }
     }

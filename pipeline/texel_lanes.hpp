@@ -138,6 +138,27 @@ template <Format format, class F>
     }
 }
 
+// True in lanes 4 i to 4 i + 3 if their numbers follow one another. So they do where a shader reads its own pixel.
+template <int N>
+[[gnu::always_inline]] inline Mask<N> in_rows_of_four(UintLanes<N> number) {
+    const UintLanes<N> first = number - as_uint(lane_index<FloatLanes<N>>() & 3);
+    const FloatLanes<N> bits = bits_float(first);
+    return float_bits(quads::shuffle<0, 0, 0, 0>(bits, bits)) == first;
+}
+// Texels in rows of four by their numbers. Those in the same column of the next block of rows are asked for: whoever reads
+// its own pixel will come for them soon, and memory's own foresight does not reach from a tile's row to its next.
+template <Format format, class F>
+[[gnu::always_inline]] inline TexelLanes<format, F> load_texel_rows(const std::byte* data, LaneUint<F> number, int row_pitch) {
+    static_assert(format == Format::RGBA32F);
+    const float* base = reinterpret_cast<const float*>(data);
+    const LaneInt<F> word = as_int(number * texel_words<format>);
+    constexpr int rows = lanes_of<F> / 4;
+    for (int i = 0; i < rows; ++i) __builtin_prefetch(base + static_cast<std::uint32_t>(lane(word, 4 * i)) + std::ptrdiff_t{rows} * row_pitch * texel_words<format>);
+    TexelLanes<format, F> texel;
+    load_quad_rows(base, word, texel.part);
+    return texel;
+}
+
 // What is known of two texels' numbers: the second is the first + 1; or that, or the first; or anything.
 enum class Neighbours { Always, Mostly, Anywhere };
 

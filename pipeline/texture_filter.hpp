@@ -149,6 +149,8 @@ template <Format format, class F, class Level>
         const U width(exists ? static_cast<unsigned>(from.width) : 0u), height(static_cast<unsigned>(from.height)), planes(static_cast<unsigned>(from.slices));
         const LaneMask<F> inside = (column < width) & (row < height) & (plane < planes);
         const U number = plane * static_cast<unsigned>(from.slice_pitch) + row * static_cast<unsigned>(from.row_pitch) + column;
+        if constexpr (format == Format::RGBA32F && lanes_of<F> >= 4)
+            if (all(inside & in_rows_of_four(number))) return to_rgba(load_texel_rows<format, F>(from.data, number, from.row_pitch));
         const TexelLanes<format, F> texel = load_texels<format, F>(from.data, select(inside, number * texel_words<format>, U(0u)));
         return select(inside, to_rgba(texel), vec4<F>(F(0.0f)));
     });

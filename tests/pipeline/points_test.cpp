@@ -57,7 +57,7 @@ TEST_CASE("points cover exactly the centres in their square") {
     Random random(51);
     for (int round = 0; round < rounds(4, 100); ++round) {
         for (const double size : {1.0, 1.5, 2.0, 3.25, 5.0, 8.0, 20.0, 255.0, 1.0 / 128, 0.5, 4.0, 6.5, 9.0, 16.0}) {
-            const int width = size > 100 ? 300 : 70, height = size > 100 ? 280 : 50;
+            const int width = size > 100 ? 300 : 134, height = size > 100 ? 280 : 50;
             const Frame frame{0, 0, static_cast<double>(width), static_cast<double>(height)};
             PipelineState state = counting_state();
             state.topology = Topology::PointList;

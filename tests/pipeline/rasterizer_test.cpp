@@ -330,10 +330,10 @@ TEST_CASE("meshes as large as the guard band have no cracks and no pixel twice")
 
 TEST_CASE("a target of many tiles is covered like a small one") {
     // More than 64 tiles under one triangle, which the binner treats in a way of its own.
-    const int width = 1100, height = 700;
+    const int width = 2100, height = 700;
     Random random(5);
-    const Frame frame{0, 0, 1024, 1024};
-    const PipelineState state = counting_state({0, 0, 1024, 1024});
+    const Frame frame{0, 0, 2048, 1024};
+    const PipelineState state = counting_state({0, 0, 2048, 1024});
     for (int round = 0; round < rounds(2, 20); ++round) {
         std::vector<GridTriangle> triangles;
         for (int k = 0; k < 3; ++k) triangles.push_back(random_triangle(random, Kind::Large, width, height));
@@ -342,7 +342,7 @@ TEST_CASE("a target of many tiles is covered like a small one") {
         std::string wrong;
         for (int y = 0; y < height && wrong.empty(); ++y) {
             for (int x = 0; x < width && wrong.empty(); ++x) {
-                const auto covering = x >= 1024 ? 0 : std::count_if(triangles.begin(), triangles.end(), [&](const GridTriangle& t) { return t.covers(x, y); });
+                const auto covering = x >= 2048 ? 0 : std::count_if(triangles.begin(), triangles.end(), [&](const GridTriangle& t) { return t.covers(x, y); });
                 if (reference.at(x, y) != static_cast<float>(covering)) wrong = text("pixel (%d, %d) is hit %g times instead of %d", x, y, static_cast<double>(reference.at(x, y)), static_cast<int>(covering));
             }
         }

@@ -112,6 +112,10 @@ struct MergeWork {
     std::ptrdiff_t pitch;
 };
 
+// Colours that are stored as they are, so that NaNs are replaced before they are taken apart.
+template <Format format, MergeMode mode>
+inline constexpr bool stored_as_is = format == Format::RGBA32F && mode == MergeMode::Opaque;
+
 // One texel.
 template <Format format, MergeMode mode>
 [[gnu::always_inline]] inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
@@ -122,7 +126,8 @@ template <Format format, MergeMode mode>
         for (int c = 0; c < 4; ++c) color[c] = min(max(0.0f, color[c]), 1.0f);
     if constexpr (mode == MergeMode::Additive) color = color + load_texel<format>(at);
     if constexpr (mode == MergeMode::General) color = blend(how.blend, color, load_texel<format>(at));
-    store_texel<format>(at, color);
+    if constexpr (stored_as_is<format, mode>) std::memcpy(at, &color, sizeof color);
+    else store_texel<format>(at, color);
 }
 
 template <Format format, MergeMode mode, class Texel>
@@ -150,11 +155,15 @@ template <class F> inline constexpr int span_of = lanes_of<F> / 4;
 // No branches: whatever depends on where a point lies would be guessed wrong.
 template <class F, MergeMode mode>
 [[gnu::always_inline]] inline void merge_span(std::byte* at, const float* colors, std::uint32_t drawn) {
-    const F before = load_lanes<F>(at);
-    F color = load_lanes<F>(colors);
-    if constexpr (mode == MergeMode::Additive) color = color + before;
-    color = select(is_nan(color), F(canonical_nan), color);
-    store_lanes(at, select(mask_from_bits<F>(drawn), color, before));
+    const LaneMask<F> mask = mask_from_bits<F>(drawn);
+    const F color = load_lanes<F>(colors);
+    if constexpr (mode == MergeMode::Opaque) {
+        store_lanes(reinterpret_cast<float*>(at), color, mask);
+    } else {
+        const F before = load_lanes<F>(at);
+        const F sum = color + before;
+        store_lanes(at, select(mask, select(is_nan(sum), F(canonical_nan), sum), before));
+    }
 }
 
 // Rows of four neighbours.
@@ -218,8 +227,12 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
     store_lanes(colors_and_more, F(0.0f));
     store_lanes(all_colors + 4 * lanes * work.count, F(0.0f));
     for (int g = 0; g < work.count; ++g) {
-        const float* r = work.results + g * work.result_stride;
-        store_transposed4(all_colors + 4 * lanes * g, load_lanes<F>(r), load_lanes<F>(r + lanes), load_lanes<F>(r + 2 * lanes), load_lanes<F>(r + 3 * lanes));
+        F color[4];
+        for (int c = 0; c < 4; ++c) {
+            color[c] = load_lanes<F>(work.results + g * work.result_stride + c * lanes);
+            if constexpr (stored_as_is<format, mode>) color[c] = select(is_nan(color[c]), F(canonical_nan), color[c]);
+        }
+        store_transposed4(all_colors + 4 * lanes * g, color[0], color[1], color[2], color[3]);
     }
     const bool aligned = has_spans && work.pitch % (4 * lanes) == 0 && reinterpret_cast<std::uintptr_t>(work.first_row) % (4 * lanes) == 0;
     for (int g = 0; g < work.count; ++g) {

@@ -23,6 +23,8 @@ class TileRasterizer {
     // Tiles are looked at in parts of one block per lane first.
     static constexpr int part_width = block_width * block_width, part_height = block_height * block_height;
 
+    // A triangle that lies within so many pixels is one whose fragments do not fill groups of their own.
+    static constexpr int medium = 64;
     static constexpr std::uint32_t all_lanes_ = (1u << lanes) - 1u;
 
 public:
@@ -86,15 +88,39 @@ private:
         const int left = std::max(r.left, left_), top = std::max(r.top, top_), right = std::min(r.right, right_), bottom = std::min(r.bottom, bottom_);
         if (left > right || top > bottom) return;
         if (r.small) {
-            const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
+                const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
             for (std::uint32_t bits = r.coverage; bits; bits &= bits - 1) {
                 const int k = __builtin_ctz(bits), x = r.left + (k & 3), y = r.top + (k >> 2);
                 if (whole || (x >= left && x <= right && y >= top && y <= bottom)) push(x, y, record);
             }
             return;
         }
+        if (lanes > 1 && right - left < medium && (right - left + 1) * (bottom - top + 1) <= medium) return draw_medium_triangle(r, record, left, top, right, bottom);
         close_packed();
         draw_large_triangle(r, left, top, right, bottom);
+    }
+
+    // A pixel per lane, row after row of the rectangle that it may cover; its fragments are packed with others'.
+    void draw_medium_triangle(const TriangleRecord& r, std::uint32_t record, int left, int top, int right, int bottom) {
+        // Values are rounded down to whole pixels (see draw_large_triangle). Far from the edge they are cut: within the
+        // rectangle they change by less than 2^30.
+        I value[3], step_x[3], step_y[3];
+        for (int k = 0; k < 3; ++k) {
+            const Edge e = edge_at(r, k, left, top);
+            value[k] = I(static_cast<std::int32_t>(std::clamp<std::int64_t>(e.value >> subpixel_bits, -(1 << 30), 1 << 30)));
+            step_x[k] = I(e.step_x), step_y[k] = I(e.step_y);
+        }
+        const int width = right - left + 1;
+        if (width != dense_width_) lay_out_dense(width);
+        I x = dense_x_, y = dense_y_;
+        for (int remaining = width * (bottom - top + 1); remaining > 0; remaining -= lanes) {
+            const auto at = [&](int k) { return value[k] + x * step_x[k] + y * step_y[k]; };
+            const std::uint32_t mask = mask_bits(((at(0) | at(1) | at(2)) >= I(0)) & first_lanes<F>(remaining));
+            store_lanes(packed_record_ + packed_, I(static_cast<std::int32_t>(record)));
+            packed_ += compress_lanes(packed_xy_ + packed_, I((top << 16) + left) + x + (y << 16), mask);
+            if (packed_ >= lanes) close_packed();
+            step_dense(x, y, width);
+        }
     }
 
     // Part by part, a block per lane; then block by block, a pixel per lane.
@@ -275,11 +301,14 @@ private:
             g.layout = Layout::Rectangle;
             g.left = left, g.right = left + width;
             add_splat(r, inverse_size, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
-            x = x + dense_columns_on_;
-            const M next_row = x >= width;
-            x = select(next_row, x - width, x);
-            y = y + dense_rows_on_ + select(next_row, I(1), I(0));
+            step_dense(x, y, width);
         }
+    }
+    void step_dense(I& x, I& y, int width) const {
+        x = x + dense_columns_on_;
+        const M next_row = x >= width;
+        x = select(next_row, x - width, x);
+        y = y + dense_rows_on_ + select(next_row, I(1), I(0));
     }
     // Which column and row of a rectangle this wide the lanes of its first group stand on, and how far the next ones are.
     void lay_out_dense(int width) {
@@ -408,9 +437,7 @@ private:
 
     // Adds one fragment of a small primitive to the group that is being packed.
     void push(int x, int y, std::uint32_t record) {
-        Group& g = groups_[count_];
-        g.x[packed_] = x;
-        g.y[packed_] = y;
+        packed_xy_[packed_] = (y << 16) + x;
         packed_record_[packed_] = static_cast<std::int32_t>(record);
         if (++packed_ == lanes) close_packed();
     }
@@ -419,14 +446,21 @@ private:
     void close_packed() {
         if (packed_ == 0) return;
         Group& g = groups_[count_];
-        for (int l = 1; l < lanes; ++l)  // idle lanes look at the first one's primitive
-            if (l >= packed_) g.x[l] = g.x[0], g.y[l] = g.y[0], packed_record_[l] = packed_record_[0];
-        std::uint32_t mask = mask_bits(first_lanes<F>(packed_));
-        packed_ = 0;
+        const M used = first_lanes<F>(packed_);
+        std::uint32_t mask = mask_bits(used);
+        // Idle lanes look at the first one's primitive.
+        const I xy = select(used, load_lanes<I>(packed_xy_), I(packed_xy_[0])), record = select(used, load_lanes<I>(packed_record_), I(packed_record_[0]));
+        const I px = xy & 0xffff, py = xy >> 16;
+        packed_ = packed_ > lanes ? packed_ - lanes : 0;
+        if (packed_ > 0) {
+            store_lanes(packed_xy_, load_lanes<I>(packed_xy_ + lanes));
+            store_lanes(packed_record_, load_lanes<I>(packed_record_ + lanes));
+        }
+        store_lanes(g.x, px);
+        store_lanes(g.y, py);
         g.uniform = false;
         g.constant = draw_.raster_topology == Topology::PointList;
         g.layout = Layout::Loose;
-        const I record = load_lanes<I>(packed_record_), px = load_lanes<I>(g.x), py = load_lanes<I>(g.y);
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);
         const auto store_word = [](std::uint32_t* to, F word) { store_lanes(to, float_bits(word)); };
         if (draw_.raster_topology == Topology::TriangleList) {
@@ -523,7 +557,8 @@ private:
     int result_stride_;
     int dense_width_ = 0, dense_columns_on_ = 0, dense_rows_on_ = 0;  // see lay_out_dense
     I dense_x_, dense_y_;
-    alignas(64) std::int32_t packed_record_[lanes];
+    // Fragments of small primitives that wait for a group: x in the low half and y in the high one; whose they are.
+    alignas(64) std::int32_t packed_xy_[3 * lanes], packed_record_[3 * lanes];
     // Pixels of the current triangle that wait for a group, x in the low half and y in the high one: less than a group's
     // and a part's, and a register to spare.
     int pending_ = 0;

@@ -10,8 +10,11 @@
 namespace nephroid {
 
 namespace {
-constexpr std::size_t cache_line = 64, huge_page = std::size_t{2} << 20;
-}
+constexpr std::size_t cache_line = 64;
+#if defined(__linux__)
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+#endif
+}  // namespace
 
 void HostMemory::release() {
 #if defined(__linux__)
@@ -26,15 +29,11 @@ void HostMemory::release() {
 bool HostMemory::allocate(std::size_t bytes) {
     release();
     if (bytes == 0) return true;
-    const std::size_t alignment = bytes >= 2 * huge_page ? huge_page : cache_line;
-    if (bytes > SIZE_MAX - alignment) return false;
-    const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-    data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, rounded));
+    if (bytes > SIZE_MAX - cache_line) return false;
+    const std::size_t rounded = (bytes + cache_line - 1) / cache_line * cache_line;
+    data_ = static_cast<std::byte*>(std::aligned_alloc(cache_line, rounded));
     if (!data_) return false;
     size_ = rounded;
-#if defined(__linux__)
-    if (alignment == huge_page) static_cast<void>(madvise(data_, rounded, MADV_HUGEPAGE));
-#endif
     return true;
 }
 

@@ -112,13 +112,29 @@ struct MergeWork {
     std::ptrdiff_t pitch;
 };
 
+// Formats whose texel is as many floats as this, for modes that need no other channel; 0: the others.
+template <Format format, MergeMode mode>
+inline constexpr int plain_floats = mode == MergeMode::General ? 0 : format == Format::RGBA32F ? 4 : format == Format::R32F ? 1 : 0;
 // Colours that are stored as they are, so that NaNs are replaced before they are taken apart.
 template <Format format, MergeMode mode>
-inline constexpr bool stored_as_is = format == Format::RGBA32F && mode == MergeMode::Opaque;
+inline constexpr bool stored_as_is = plain_floats<format, mode> != 0 && mode == MergeMode::Opaque;
+// Channels of a fragment's colour that are kept for the merger, one after another.
+template <Format format, MergeMode mode>
+inline constexpr int kept_channels = plain_floats<format, mode> == 1 ? 1 : 4;
 
 // One texel.
 template <Format format, MergeMode mode>
 [[gnu::always_inline]] inline void merge_texel(const ColorTarget& how, std::byte* at, const float* source) {
+    if constexpr (plain_floats<format, mode> == 1) {
+        float value = *source;
+        if constexpr (mode == MergeMode::Additive) {
+            float before;
+            std::memcpy(&before, at, sizeof before);
+            value = canonical(value + before);
+        }
+        std::memcpy(at, &value, sizeof value);
+        return;
+    }
     Color4 color;
     std::memcpy(&color, source, sizeof color);
     // What enters the blender of a fixed-point target is clamped to its range first, as in Direct3D.
@@ -132,24 +148,33 @@ template <Format format, MergeMode mode>
 
 template <Format format, MergeMode mode, class Texel>
 [[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, const Texel& texel, const float* colors, std::uint32_t mask) {
+    constexpr int channels = kept_channels<format, mode>;
     if ((mask & (mask + 1)) == 0) {  // all from the first lane on
-        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode>(how, texel(l), colors + 4 * l);
+        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode>(how, texel(l), colors + channels * l);
     } else {
         for (; mask; mask &= mask - 1) {
             const int l = __builtin_ctz(mask);
-            merge_texel<format, mode>(how, texel(l), colors + 4 * l);
+            merge_texel<format, mode>(how, texel(l), colors + channels * l);
         }
     }
 }
 
 // ---- several texels at a time
 //
-// Where a texel is what a colour is, an RGBA32F one, a register holds as many of them as it has lanes for: its span. Spans are
-// read and written whole, at multiples of their size and whatever of them is drawn: what one point's span has stored the next
-// one's then finds on its way to the cache. A load that takes parts of several stores, as those of single texels would be,
-// waits until these have reached it.
+// Where a texel is plain floats, a register holds several of them, as many as it has lanes for: a span. Spans are read and
+// written whole, at multiples of their size and whatever of them is drawn: what one point's span has stored the next one's
+// then finds on its way to the cache. A load that takes parts of several stores, as those of single texels would be, waits
+// until these have reached it.
 
-template <class F> inline constexpr int span_of = lanes_of<F> / 4;
+// What the lanes `drawn` of a register become.
+template <class F, MergeMode mode>
+[[gnu::always_inline]] inline F merged(F before, F color, LaneMask<F> drawn) {
+    if constexpr (mode == MergeMode::Additive) {
+        color = color + before;
+        color = select(is_nan(color), F(canonical_nan), color);
+    }
+    return select(drawn, color, before);
+}
 
 // The span at `at`, as far as its lanes are drawn: a bit per channel of each texel. `colors` has all of it, used or not.
 // No branches: whatever depends on where a point lies would be guessed wrong.
@@ -157,52 +182,53 @@ template <class F, MergeMode mode>
 [[gnu::always_inline]] inline void merge_span(std::byte* at, const float* colors, std::uint32_t drawn) {
     const LaneMask<F> mask = mask_from_bits<F>(drawn);
     const F color = load_lanes<F>(colors);
-    if constexpr (mode == MergeMode::Opaque) {
-        store_lanes(reinterpret_cast<float*>(at), color, mask);
-    } else {
-        const F before = load_lanes<F>(at);
-        const F sum = color + before;
-        store_lanes(at, select(mask, select(is_nan(sum), F(canonical_nan), sum), before));
-    }
+    if constexpr (mode == MergeMode::Opaque) store_lanes(reinterpret_cast<float*>(at), color, mask);
+    else store_lanes(at, merged<F, mode>(load_lanes<F>(at), color, mask));
 }
 
 // Rows of four neighbours.
-template <class F, MergeMode mode>
+template <class F, Format format, MergeMode mode>
 [[gnu::always_inline]] inline void merge_rows_of_four(std::byte* first, std::ptrdiff_t pitch, const float* colors, std::uint32_t mask) {
-    // From a bit per texel to one per channel.
-    static constexpr std::uint16_t channels[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f, 0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff, 0xff00, 0xff0f, 0xfff0, 0xffff};
-    constexpr std::uint32_t all = (1u << span_of<F>) - 1u;
-    for (int l = 0; l < lanes_of<F>; l += span_of<F>)
-        if (const std::uint32_t drawn = mask >> l & all) merge_span<F, mode>(first + l / 4 * pitch + l % 4 * 16, colors + 4 * l, channels[drawn]);
+    if constexpr (plain_floats<format, mode> == 1) {
+        F color = load_lanes<F>(colors);
+        if constexpr (mode == MergeMode::Additive) color = merged<F, mode>(load_rows_of_four(first, pitch, static_cast<F*>(nullptr)), color, LaneMask<F>(true));
+        store_rows_of_four(first, pitch, color, mask);
+    } else {
+        // From a bit per texel to one per channel.
+        static constexpr std::uint16_t channels[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f, 0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff, 0xff00, 0xff0f, 0xfff0, 0xffff};
+        constexpr int span = lanes_of<F> / 4;
+        for (int l = 0; l < lanes_of<F>; l += span)
+            if (const std::uint32_t drawn = mask >> l & ((1u << span) - 1u)) merge_span<F, mode>(first + l / 4 * pitch + l % 4 * 16, colors + 4 * l, channels[drawn]);
+    }
 }
 
 // `rows` rows of the texels [x, end), `colors` beginning at x. Texels of a row beyond it are read and written back.
-template <class F, MergeMode mode>
+template <class F, int channels, MergeMode mode>
 [[gnu::always_inline]] inline void merge_rows(std::byte* row, std::ptrdiff_t pitch, int x, int end, int rows, const float* colors) {
-    constexpr int span = span_of<F>;
+    constexpr int span = lanes_of<F> / channels, bytes = channels * static_cast<int>(sizeof(float));
     const int first = x & -span, last = (end - 1) & -span, width = end - x;
-    const std::uint32_t at_end = (2u << (4 * (end - 1 - last) + 3)) - 1u, at_first = ~0u << 4 * (x - first);
-    colors += 4 * (first - x);
-    for (row += first * 16; rows > 0; --rows, row += pitch, colors += 4 * width) {
+    const std::uint32_t at_end = (2u << (channels * (end - last) - 1)) - 1u, at_first = ~0u << channels * (x - first);
+    colors += channels * (first - x);
+    for (row += first * bytes; rows > 0; --rows, row += pitch, colors += channels * width) {
         if (first == last) {
             merge_span<F, mode>(row, colors, at_first & at_end);
             continue;
         }
         merge_span<F, mode>(row, colors, at_first);
         int on = span;
-        for (; on < last - first; on += span) merge_span<F, mode>(row + on * 16, colors + 4 * on, ~0u);
-        merge_span<F, mode>(row + on * 16, colors + 4 * on, at_end);
+        for (; on < last - first; on += span) merge_span<F, mode>(row + on * bytes, colors + channels * on, ~0u);
+        merge_span<F, mode>(row + on * bytes, colors + channels * on, at_end);
     }
 }
 
 // The first `count` fragments of a rectangle from (x, y) on.
-template <class F, MergeMode mode>
+template <class F, int channels, MergeMode mode>
 [[gnu::always_inline]] inline void merge_rectangle(std::byte* first_row, std::ptrdiff_t pitch, int left, int right, int x, int y, const float* colors, int count) {
     const int width = right - left;
     const auto merge = [&](int from, int end, int rows) {
-        merge_rows<F, mode>(first_row + y * pitch, pitch, from, end, rows, colors);
+        merge_rows<F, channels, mode>(first_row + y * pitch, pitch, from, end, rows, colors);
         const int merged = (end - from) * rows;
-        colors += 4 * merged, count -= merged, y += rows;
+        colors += channels * merged, count -= merged, y += rows;
     };
     if (x != left) merge(x, std::min(right, x + count), 1);
     if (count >= width) merge(left, right, count / width);
@@ -219,37 +245,40 @@ inline bool goes_on(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
 // The groups' colours into one target.
 template <class F, Format format, MergeMode mode>
 void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
-    constexpr int lanes = lanes_of<F>;
-    constexpr bool has_spans = format == Format::RGBA32F && mode != MergeMode::General && lanes >= 4;
+    constexpr int lanes = lanes_of<F>, channels = kept_channels<format, mode>;
+    constexpr bool has_spans = plain_floats<format, mode> != 0 && lanes >= 4;
     // Texel after texel; round them what a span may read too much.
-    alignas(64) float colors_and_more[4 * lanes * groups_per_flush + 2 * lanes];
+    alignas(64) float colors_and_more[channels * lanes * groups_per_flush + 2 * lanes];
     float* const all_colors = colors_and_more + lanes;
     store_lanes(colors_and_more, F(0.0f));
-    store_lanes(all_colors + 4 * lanes * work.count, F(0.0f));
+    store_lanes(all_colors + channels * lanes * work.count, F(0.0f));
     for (int g = 0; g < work.count; ++g) {
-        F color[4];
-        for (int c = 0; c < 4; ++c) {
+        F color[channels];
+        for (int c = 0; c < channels; ++c) {
             color[c] = load_lanes<F>(work.results + g * work.result_stride + c * lanes);
             if constexpr (stored_as_is<format, mode>) color[c] = select(is_nan(color[c]), F(canonical_nan), color[c]);
         }
-        store_transposed4(all_colors + 4 * lanes * g, color[0], color[1], color[2], color[3]);
+        float* const colors = all_colors + channels * lanes * g;
+        if constexpr (channels == 4) store_transposed4(colors, color[0], color[1], color[2], color[3]);
+        else store_lanes(colors, color[0]);
     }
-    const bool aligned = has_spans && work.pitch % (4 * lanes) == 0 && reinterpret_cast<std::uintptr_t>(work.first_row) % (4 * lanes) == 0;
+    constexpr int span_bytes = 4 * lanes;
+    const bool aligned = has_spans && work.pitch % span_bytes == 0 && reinterpret_cast<std::uintptr_t>(work.first_row) % span_bytes == 0;
     for (int g = 0; g < work.count; ++g) {
         const FragmentGroup<lanes>& group = work.groups[g];
         const std::uint32_t mask = work.masks[g];
-        const float* colors = all_colors + 4 * lanes * g;
+        const float* colors = all_colors + channels * lanes * g;
         const auto texel = [&](int l) __attribute__((always_inline)) { return work.first_row + group.y[l] * work.pitch + group.x[l] * bytes_per_texel(format); };
         if constexpr (has_spans) {
             if (group.layout == Layout::RowsOfFour) {
-                merge_rows_of_four<F, mode>(texel(0), work.pitch, colors, mask);
+                merge_rows_of_four<F, format, mode>(texel(0), work.pitch, colors, mask);
                 continue;
             }
             if (group.layout == Layout::Rectangle && aligned && (mask & (mask + 1)) == 0) {
                 int count = __builtin_popcount(mask);
                 for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && (work.masks[g + 1] & (work.masks[g + 1] + 1)) == 0; ++g)
                     count += __builtin_popcount(work.masks[g + 1]);
-                merge_rectangle<F, mode>(work.first_row, work.pitch, group.left, group.right, group.x[0], group.y[0], colors, count);
+                merge_rectangle<F, channels, mode>(work.first_row, work.pitch, group.left, group.right, group.x[0], group.y[0], colors, count);
                 continue;
             }
         }

@@ -164,6 +164,20 @@ template <int N>
         b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_high_u16(halves))));
 #elif defined(__SSE4_1__)
         const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at[j]));
+        // Where there are neither subnormals nor infinities or NaNs, a shifted half is the float times 2^-112.
+        const __m128i magnitude = _mm_and_si128(halves, _mm_set1_epi16(0x7fff));
+        const __m128i special = _mm_cmpgt_epi16(magnitude, _mm_set1_epi16(0x7bff));
+        const __m128i subnormal = _mm_cmpeq_epi16(_mm_subs_epu16(_mm_sub_epi16(magnitude, _mm_set1_epi16(1)), _mm_set1_epi16(0x3fe)), _mm_setzero_si128());
+        const __m128i others = _mm_or_si128(special, subnormal);
+        if (_mm_testz_si128(others, others)) [[likely]] {
+            const auto convert = [](__m128i high) __attribute__((always_inline)) {
+                const __m128i bits = _mm_and_si128(_mm_srai_epi32(high, 3), _mm_set1_epi32(static_cast<int>(0x8fffe000u)));
+                return FloatLanes<N>((typename FloatLanes<N>::Native)_mm_mul_ps(_mm_castsi128_ps(bits), _mm_set1_ps(0x1p112f)));
+            };
+            a[j] = convert(_mm_unpacklo_epi16(_mm_setzero_si128(), halves));
+            b[j] = convert(_mm_unpackhi_epi16(_mm_setzero_si128(), halves));
+            continue;
+        }
         a[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_cvtepu16_epi32(halves)));
         b[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_unpackhi_epi16(halves, _mm_setzero_si128())));
 #else

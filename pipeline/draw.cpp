@@ -99,6 +99,7 @@ std::size_t lay_out(DrawContext& draw, std::byte* memory, int slots, std::int64_
     std::uint32_t* starts = carver.take<std::uint32_t>(strip_starts);
     draw.strip_starts = strip_starts ? starts : nullptr;
     draw.batches = carver.take<Batch>(slots);
+    draw.tile_order = carver.take<TileWork>(draw.tile_count);
 
     const bool raster_records_needed = draw.rasterize && t.has_pixel && draw.raster_layout->has_varyings();
     // Vertex structs of all slots, one after another: those that are rasterized come first in each slot.
@@ -299,22 +300,35 @@ void run_front_end(const DrawContext& draw, std::int64_t first_primitive, int co
 
 // ---- back end
 
-struct TileRange {
-    int first, last;
-};
-TileRange touched_tiles(const DrawContext& draw) {
-    TileRange range{draw.tile_count, -1};
+// The tiles that the chunk's primitives touch, those with most of them first, so that no thread begins with much when the
+// others are done; their number. What a tile shows does not depend on the order; an observer is shown them from the first on.
+int order_tiles(const DrawContext& draw) {
+    int first = draw.tile_count, last = -1;
     for (int b = 0; b < draw.batch_count; ++b) {
-        range.first = std::min(range.first, draw.batches[b].first_tile);
-        range.last = std::max(range.last, draw.batches[b].last_tile);
+        first = std::min(first, draw.batches[b].first_tile);
+        last = std::max(last, draw.batches[b].last_tile);
     }
-    return range;
+    int count = 0;
+    for (int tile = first; tile <= last; ++tile) {
+        std::uint32_t primitives = 0;
+        for (int b = 0; b < draw.batch_count; ++b) {
+            const Batch& batch = draw.batches[b];
+            if (tile < batch.first_tile || tile > batch.last_tile) continue;
+            const int bin = tile - batch.first_tile;
+            primitives += batch.bin[bin + 1] - batch.bin[bin] + static_cast<std::uint32_t>(batch.everywhere_count);
+        }
+        if (primitives) draw.tile_order[count++] = {primitives, tile};
+    }
+    if (draw.observer) return count;
+    std::sort(draw.tile_order, draw.tile_order + count,
+              [](const TileWork& a, const TileWork& b) { return a.primitives != b.primitives ? a.primitives > b.primitives : a.tile < b.tile; });
+    return count;
 }
 
 // One primitive after the other over all tiles, so that an observer sees fragments in the order of submission.
-void draw_tiles_observed(const DrawContext& draw, TileRange range, TileScratch& scratch) {
+void draw_tiles_observed(const DrawContext& draw, int tiles, TileScratch& scratch) {
     for (int record = 0; record < draw.batches[0].record_count; ++record)
-        for (int tile = range.first; tile <= range.last; ++tile) draw.engine->draw_tile(draw, tile, record, scratch);
+        for (int i = 0; i < tiles; ++i) draw.engine->draw_tile(draw, draw.tile_order[i].tile, record, scratch);
 }
 
 }  // namespace
@@ -426,10 +440,9 @@ DrawResult Device::draw(const ProgramRef& program, const PipelineState& state, c
             executor_.for_each(draw.batch_count, [&](int b, int) { write_streams(draw, draw.batches[b], places[b], cursors); });
         }
         if (draw.rasterize) {
-            const TileRange range = touched_tiles(draw);
-            if (call.observer) draw_tiles_observed(draw, range, scratch[0]);
-            else if (range.first <= range.last)
-                executor_.for_each(range.last - range.first + 1, [&](int i, int worker) { draw.engine->draw_tile(draw, range.first + i, -1, scratch[worker]); });
+            const int tiles = order_tiles(draw);
+            if (call.observer) draw_tiles_observed(draw, tiles, scratch[0]);
+            else executor_.for_each(tiles, [&](int i, int worker) { draw.engine->draw_tile(draw, draw.tile_order[i].tile, -1, scratch[worker]); });
         }
         for (int b = 0; b < draw.batch_count; ++b) result.statistics += draw.batches[b].statistics;
     }

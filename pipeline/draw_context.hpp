@@ -141,6 +141,12 @@ struct Batch {
 
 struct EngineKernelTable;
 
+// How many of a chunk's primitives touch a tile.
+struct TileWork {
+    std::uint32_t primitives;
+    int tile;
+};
+
 struct DrawContext {
     // resolved state
     ProgramRef program;
@@ -179,6 +185,7 @@ struct DrawContext {
     int record_capacity, pair_capacity;
     int record_bytes;
     Batch* batches;  // of the current chunk
+    TileWork* tile_order;  // [tile_count]
     int batch_count;
     std::byte* vertex_records;  // of all batches, as are
     std::byte* raster_records;

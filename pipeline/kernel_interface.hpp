@@ -66,15 +66,15 @@ struct GeometryWork {
 
 // ---- fragments
 
-// Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second
-// and third corner, perspective-correct; l1, l2 are the ones linear on the screen.
-//
-// How the lanes of a group lie on the screen, for those who move several texels at a time.
-enum class Layout : std::uint8_t {
+// How the lanes of a group of fragments lie on the screen, for those who move several texels at a time.
+enum class GroupLayout : std::uint8_t {
     Loose,
     RowsOfFour,  // rows of four neighbours from (x[0], y[0]) on, row after row, x[0] a multiple of four, all within the target
     Rectangle,   // row after row of the columns [left, right), from (x[0], y[0]) on
 };
+
+// Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second
+// and third corner, perspective-correct; l1, l2 are the ones linear on the screen.
 template <int N>
 struct alignas(64) FragmentGroup {
     std::int32_t x[N], y[N];
@@ -86,8 +86,8 @@ struct alignas(64) FragmentGroup {
     // One primitive for all lanes (`uniform`: index 0 of each), or one per lane.
     bool uniform;
     bool constant;      // all three corners are one vertex, whose values every fragment has: a point
-    Layout layout;
-    std::int32_t left, right;    // of a Rectangle
+    GroupLayout layout;
+    std::int32_t left, right;  // of a Rectangle
     std::uint32_t corner[3][N];  // records to interpolate between
     std::uint32_t leading[N];    // record that flat values come from
     std::uint32_t primitive_id[N];

@@ -32,7 +32,7 @@ template <class F>
 inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& target, const FragmentGroup<lanes_of<F>>& group, const float* depth, std::uint32_t mask,
                                 PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
-    if (lanes > 1 && group.layout == Layout::RowsOfFour) {
+    if (lanes > 1 && group.layout == GroupLayout::RowsOfFour) {
         std::byte* first = target.depth + group.y[0] * target.depth_pitch + group.x[0] * 4;
         const F value = load_lanes<F>(depth), stored = load_rows_of_four(first, target.depth_pitch, static_cast<F*>(nullptr));
         const LaneMask<F> pass = passes<F>(state.test, value, stored) & mask_from_bits<F>(mask);
@@ -238,7 +238,7 @@ template <class F, int channels, MergeMode mode>
 // True if group `b` goes on in the rectangle where `a`, all of whose lanes are drawn, ends.
 template <int N>
 inline bool goes_on(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
-    if (b.layout != Layout::Rectangle || b.left != a.left || b.right != a.right) return false;
+    if (b.layout != GroupLayout::Rectangle || b.left != a.left || b.right != a.right) return false;
     return b.x[0] == a.x[N - 1] + 1 ? b.y[0] == a.y[N - 1] : b.x[0] == b.left && a.x[N - 1] + 1 == a.right && b.y[0] == a.y[N - 1] + 1;
 }
 
@@ -270,11 +270,11 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
         const float* colors = all_colors + channels * lanes * g;
         const auto texel = [&](int l) __attribute__((always_inline)) { return work.first_row + group.y[l] * work.pitch + group.x[l] * bytes_per_texel(format); };
         if constexpr (has_spans) {
-            if (group.layout == Layout::RowsOfFour) {
+            if (group.layout == GroupLayout::RowsOfFour) {
                 merge_rows_of_four<F, format, mode>(texel(0), work.pitch, colors, mask);
                 continue;
             }
-            if (group.layout == Layout::Rectangle && aligned && (mask & (mask + 1)) == 0) {
+            if (group.layout == GroupLayout::Rectangle && aligned && (mask & (mask + 1)) == 0) {
                 int count = __builtin_popcount(mask);
                 for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && (work.masks[g + 1] & (work.masks[g + 1] + 1)) == 0; ++g)
                     count += __builtin_popcount(work.masks[g + 1]);

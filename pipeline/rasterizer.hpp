@@ -88,7 +88,7 @@ private:
         const int left = std::max(r.left, left_), top = std::max(r.top, top_), right = std::min(r.right, right_), bottom = std::min(r.bottom, bottom_);
         if (left > right || top > bottom) return;
         if (r.small) {
-                const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
+            const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
             for (std::uint32_t bits = r.coverage; bits; bits &= bits - 1) {
                 const int k = __builtin_ctz(bits), x = r.left + (k & 3), y = r.top + (k >> 2);
                 if (whole || (x >= left && x <= right && y >= top && y <= bottom)) push(x, y, record);
@@ -207,7 +207,7 @@ private:
     // A block of one triangle, in rows of four.
     void add_block(const TriangleRecord& r, int x, int y, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.layout = whole_rows(x, y) ? Layout::RowsOfFour : Layout::Loose;
+        g.layout = whole_rows(x, y) ? GroupLayout::RowsOfFour : GroupLayout::Loose;
         add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
     }
 
@@ -220,7 +220,7 @@ private:
     }
     void add_loose_group(const TriangleRecord& r, const std::int32_t* xy, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.layout = Layout::Loose;
+        g.layout = GroupLayout::Loose;
         // Idle lanes stand on the first one's pixel.
         const I at = select(mask_from_bits<F>(mask), load_lanes<I>(xy), I(xy[0]));
         add_triangle_group(r, at & 0xffff, at >> 16, mask);
@@ -298,7 +298,7 @@ private:
         const float inverse_size = 1.0f / r.size;
         for (int remaining = width * height; remaining > 0; remaining -= lanes) {
             Group& g = groups_[count_];
-            g.layout = Layout::Rectangle;
+            g.layout = GroupLayout::Rectangle;
             g.left = left, g.right = left + width;
             add_splat(r, inverse_size, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
             step_dense(x, y, width);
@@ -326,7 +326,7 @@ private:
             for (int x = left & -block_width; x <= right; x += block_width) {
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
                 Group& g = groups_[count_];
-                g.layout = whole_rows(x, y) ? Layout::RowsOfFour : Layout::Loose;
+                g.layout = whole_rows(x, y) ? GroupLayout::RowsOfFour : GroupLayout::Loose;
                 add_splat(r, inverse_size, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
@@ -410,7 +410,7 @@ private:
         Group& g = groups_[count_];
         g.uniform = true;
         g.constant = false;
-        g.layout = Layout::Loose;
+        g.layout = GroupLayout::Loose;
         const float length = static_cast<float>(steep ? r.y[1] - r.y[0] : r.x[1] - r.x[0]);
         const float way = static_cast<float>((steep ? y : x) * subpixels + subpixels / 2 - (steep ? r.y[0] : r.x[0]));
         const float t = min(max(way / length, 0.0f), 1.0f);
@@ -460,7 +460,7 @@ private:
         store_lanes(g.y, py);
         g.uniform = false;
         g.constant = draw_.raster_topology == Topology::PointList;
-        g.layout = Layout::Loose;
+        g.layout = GroupLayout::Loose;
         const float* words = reinterpret_cast<const float*>(draw_.raster_records);
         const auto store_word = [](std::uint32_t* to, F word) { store_lanes(to, float_bits(word)); };
         if (draw_.raster_topology == Topology::TriangleList) {
@@ -522,13 +522,13 @@ private:
             const std::ptrdiff_t pitch = target_.color_pitch[t], texel_bytes = draw_.color[t].texel_bytes;
             for (int g = 0; g < count_; ++g) {
                 const Group& group = groups_[g];
-                if (group.layout == Layout::Rectangle) {
+                if (group.layout == GroupLayout::Rectangle) {
                     for (int y = group.y[0]; y <= group.y[lanes - 1]; ++y) {
                         __builtin_prefetch(first + y * pitch + group.left * texel_bytes, 1);
                         __builtin_prefetch(first + y * pitch + (group.right - 1) * texel_bytes, 1);
                     }
                 } else {
-                    for (int l = 0; l < lanes; l += group.layout == Layout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
+                    for (int l = 0; l < lanes; l += group.layout == GroupLayout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
                 }
             }
         }

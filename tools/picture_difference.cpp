@@ -26,9 +26,16 @@ PixelDifference difference_at(const PictureData& test, const PictureData& refere
             test.values[value], reference.values[value]};
 }
 
-double ratio(double above, double below) {
-    if (below != 0) return above / below;
-    return above == 0 ? 1 : std::numeric_limits<double>::quiet_NaN();
+double bias(double test, double reference) {
+    if (reference != 0) return (test - reference) / reference;
+    return test == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+// The smallest value that at least 99 % of all do not exceed; there is one.
+template <class T> T percentile_99_of(std::vector<T>& values) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() * 99 + 99) / 100 - 1);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 // As red, green and blue; what is left out as `fill` has it.
@@ -87,18 +94,22 @@ PictureDifference measure(const PictureData& test, const PictureData& reference,
     const double count = static_cast<double>(d.pixels) * static_cast<double>(channels);
     d.left_out = static_cast<std::int64_t>(reference.pixel_count()) - d.pixels;
     d.reference_mean = reference_sum / count;
-    d.energy_ratio = ratio(test_sum, reference_sum);
+    d.energy_bias = bias(test_sum, reference_sum);
 
-    const double share = 0.1 * d.reference_mean;
-    double squares = 0, relative_squares = 0, largest = 0;
+    const double share = d.epsilon = 0.1 * d.reference_mean;
+    double squares = 0, relative_squares = 0, symmetric = 0, largest = 0;
+    std::vector<double> relative;  // squared, one per value
+    relative.reserve(static_cast<std::size_t>(count));
     for_each_compared(reference, mask, [&](std::size_t, std::size_t first) {
         bool differs = false;
         for (std::size_t v = first; v < first + channels; ++v) {
             const double x = test.values[v], r = reference.values[v];
+            relative.push_back(x == r ? 0 : (x - r) * (x - r) / (r * r + share * share));
             if (x == r) continue;
             differs = true;
             squares += (x - r) * (x - r);
-            relative_squares += (x - r) * (x - r) / (r * r + share * share);
+            relative_squares += relative.back();
+            symmetric += 2 * std::abs(x - r) / (std::abs(x) + std::abs(r));
             if (std::abs(x - r) > largest) {
                 largest = std::abs(x - r);
                 d.largest = difference_at(test, reference, v);
@@ -108,6 +119,8 @@ PictureDifference measure(const PictureData& test, const PictureData& reference,
     });
     d.rmse = std::sqrt(squares / count);
     d.relative_mse = relative_squares / count;
+    d.smape = symmetric / count;
+    d.percentile_99 = std::sqrt(percentile_99_of(relative));
     return d;
 }
 
@@ -150,10 +163,8 @@ FlipDifference measure_flip(Executor& executor, const PictureData& test, const P
             compared.push_back(d.errors[i]), sum += d.errors[i];
     }
     d.mean = sum / static_cast<double>(compared.size());
-    const auto percentile = compared.begin() + static_cast<std::ptrdiff_t>((compared.size() - 1) * 99 / 100);
-    std::nth_element(compared.begin(), percentile, compared.end());
-    d.percentile_99 = *percentile;
-    d.largest = *std::max_element(percentile, compared.end());
+    d.percentile_99 = percentile_99_of(compared);
+    d.largest = *std::max_element(compared.begin(), compared.end());
     return d;
 }
 

@@ -31,7 +31,11 @@ struct PictureDifference {
     // mean((x - r)^2 / (r^2 + (0.1 m)^2)), m the reference's mean: the mean's share keeps dark pixels from outweighing all
     // others. 0 / 0 counts as 0: infinite only where a reference that is black throughout is missed.
     double relative_mse = 0;
-    double energy_ratio = 1;  // the test's sum over the reference's; NaN: the reference has none and the test has
+    double epsilon = 0;  // 0.1 m of the line above
+    // The relative error (x - r)^2 / (r^2 + (0.1 m)^2), square root taken, that 99 % of all values do not exceed.
+    double percentile_99 = 0;
+    double smape = 0;  // mean(|x - r| / ((|x| + |r|) / 2)), 0 / 0 counting as 0: at most 2
+    double energy_bias = 0;  // (the test's sum - the reference's) / the reference's; NaN: the reference has none and the test has
     PixelDifference largest;  // the first of the largest
 };
 

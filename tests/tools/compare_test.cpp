@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -67,7 +69,7 @@ TEST_CASE("one other pixel: exit code 1, and a line that says what and where") {
     const Outcome o = p.compare({"a.exr", "b.exr"});
     check_line(o, 1, "a.exr differs from b.exr: relMSE ");
     CHECK(o.err.find("1 of 48 pixels differ") != std::string::npos);
-    CHECK(o.out.find("most at 3,1: G ") != std::string::npos);
+    CHECK(o.out.find("largest       at 3,1: G ") != std::string::npos);
     check_line(p.compare({"a.exr", "b.exr", "--exact"}), 1, "a.exr differs from b.exr: 1 of 48 pixels have other bits");
     check_line(p.compare({"a.exr", "b.exr", "--metric", "rmse"}), 1, "RMSE ");
     check_line(p.compare({"a.exr", "b.exr", "--metric", "flip"}), 1, "HDR-FLIP ");
@@ -87,9 +89,13 @@ TEST_CASE("the numbers printed are those measured, with B as the reference") {
     CHECK(j["rmse"] == d.rmse);
     CHECK(j["relmse"] == d.relative_mse);
     CHECK(j["reference_mean"] == d.reference_mean);
-    CHECK(j["energy_ratio"] == d.energy_ratio);
-    CHECK(j["energy_ratio"] > 1.0);
-    CHECK(p.json({"b.exr", "a.exr"})["energy_ratio"] < 1.0);
+    CHECK(j["epsilon"] == d.epsilon);
+    CHECK(j["p99"] == d.percentile_99);
+    CHECK(j["smape"] == d.smape);
+    CHECK(j["energy_bias"] == d.energy_bias);
+    CHECK(j["energy_bias"] > 0.0);
+    CHECK(p.json({"b.exr", "a.exr"})["energy_bias"] < 0.0);
+    CHECK_FALSE(j.contains("regions"));
     CHECK(j["largest_difference"]["pixel"] == Json{3, 1});
     CHECK(j["largest_difference"]["channel"] == "G");
     CHECK(j["largest_difference"]["test"].get<double>() - j["largest_difference"]["reference"].get<double>() == doctest::Approx(1));
@@ -98,7 +104,7 @@ TEST_CASE("the numbers printed are those measured, with B as the reference") {
     CHECK(j["flip"]["exposures"]["count"] == 2);
     CHECK(j["flip"]["mean"] > 0.0);
     CHECK(j["flip"]["largest"] <= 1.0);
-    CHECK(j["tolerance"] == Json{{"metric", "relmse"}, {"value", d.relative_mse}, {"limit", 0.0}});
+    CHECK(j["tolerance"] == Json{{"metric", "relmse"}, {"region", "picture"}, {"value", d.relative_mse}, {"limit", 0.0}});
     CHECK(j["same"] == false);
 }
 
@@ -110,6 +116,8 @@ TEST_CASE("a tolerance bounds the metric that was named, and its own value passe
     const std::pair<std::string, double> metrics[] = {
         {"rmse", d.rmse},
         {"relmse", d.relative_mse},
+        {"smape", d.smape},
+        {"bias", d.energy_bias},
         {"flip", measure_flip(executor, p.test, p.reference, all, default_pixels_per_degree).mean}};
     for (const auto& chosen : metrics) {
         const std::string& metric = chosen.first;
@@ -184,6 +192,84 @@ TEST_CASE("pixels are left out by a picture, or by a channel of the reference") 
     check_line(p.compare({"a.exr", "b.exr", "--mask", "small.exr"}), 2, "small.exr: has 7 x 6 pixels, but b.exr has 8 x 6");
 }
 
+TEST_CASE("regions: where the caustic is more than half, its layer, and what is left out") {
+    const Pair p;
+    // Four pixels of light 4: the caustic's share is 1, 3, 3 and 2, of which half is not more. The last but one is left out.
+    const std::vector<std::string> names{"R", "G", "B", "caustic.R", "caustic.G", "caustic.B"}, with_mask{"R", "G", "B", "caustic.R", "caustic.G", "caustic.B", "mask"};
+    const float share[] = {1, 3, 3, 2}, left_out[] = {0, 0, 1, 0};
+    std::vector<float> reference, test;
+    for (int i = 0; i < 4; ++i) {
+        reference.insert(reference.end(), {4, 4, 4, share[i], share[i], share[i], left_out[i]});
+        const float more = static_cast<float>(i + 1);
+        test.insert(test.end(), {4 + more, 4 + more, 4 + more, share[i] + more, share[i] + more, share[i] + more});
+    }
+    p.write("r.exr", picture_of(4, 1, with_mask, reference));
+    p.write("t.exr", picture_of(4, 1, names, test));
+    const Json j = p.json({"t.exr", "r.exr"});
+    CHECK(j["pixels"] == 3);
+    CHECK(j["rmse"] == doctest::Approx(std::sqrt((1 + 4 + 16) / 3.0)));
+    CHECK(j["regions"]["caustic-pixels"]["pixels"] == 1);
+    CHECK(j["regions"]["caustic-pixels"]["rmse"] == doctest::Approx(2));
+    CHECK(j["regions"]["caustic-pixels"]["reference_mean"] == doctest::Approx(4));
+    CHECK(j["regions"]["caustic-layer"]["pixels"] == 3);
+    CHECK(j["regions"]["caustic-layer"]["reference_mean"] == doctest::Approx(2));
+    CHECK(j["regions"]["caustic-layer"]["energy_bias"] == doctest::Approx(7.0 / 6.0));
+    CHECK(j["regions"]["left-out"]["pixels"] == 1);
+    CHECK(j["regions"]["left-out"]["rmse"] == doctest::Approx(3));
+    const Outcome text = p.compare({"t.exr", "r.exr"});
+    CHECK(text.out.find("picture         caustic-pixels  caustic-layer   left-out\n") != std::string::npos);
+
+    CHECK(p.compare({"t.exr", "r.exr", "--metric", "rmse", "--tolerance", "2", "--region", "caustic-pixels"}).code == 0);
+    check_line(p.compare({"t.exr", "r.exr", "--metric", "rmse", "--tolerance", "1.9", "--region", "caustic-pixels"}), 1, "RMSE 2 is above 1.9 (1 of 1 pixels differ, caustic-pixels)");
+    check_line(p.compare({"t.exr", "r.exr", "--metric", "p99"}), 1, "99th percentile of the relative error 0.995037 is above 0");
+    check_line(p.compare({"a.exr", "b.exr", "--region", "caustic-layer"}), 2, "b.exr: has no pixels for --region caustic-layer");
+    check_line(p.compare({"a.exr", "b.exr", "--region", "left-out"}), 2, "nothing is left out");
+    check_line(p.compare({"t.exr", "r.exr", "--region", "caustic-layer", "--exact"}), 2, "excludes");
+    check_line(p.compare({"t.exr", "r.exr", "--region", "caustic-layer", "--metric", "flip"}), 2, "--metric flip is of the picture");
+}
+
+TEST_CASE("--junit: a test case that passed, failed, or could not be run") {
+    const Pair p;
+    const auto xml = [&] {
+        std::ifstream file(p.folder / "j.xml");
+        return std::string{std::istreambuf_iterator<char>(file), {}};
+    };
+    CHECK(p.compare({"b.exr", "b.exr", "--junit", "j.xml"}).code == 0);
+    CHECK(xml().find("tests=\"1\" failures=\"0\" errors=\"0\"") != std::string::npos);
+    CHECK(xml().find("<testcase classname=\"b.exr\" name=\"b.exr\"/>") != std::string::npos);
+    CHECK(p.compare({"a.exr", "b.exr", "--junit", "j.xml"}).code == 1);
+    CHECK(xml().find("failures=\"1\" errors=\"0\"") != std::string::npos);
+    CHECK(xml().find("<failure message=\"a.exr differs from b.exr: relMSE ") != std::string::npos);
+    p.write("a<&>.exr", p.test);
+    CHECK(p.compare({"a<&>.exr", "none.exr", "--junit", "j.xml"}).code == 2);
+    CHECK(xml().find("failures=\"0\" errors=\"1\"") != std::string::npos);
+    CHECK(xml().find("name=\"a&lt;&amp;&gt;.exr\"") != std::string::npos);
+    CHECK(xml().find("<error message=\"none.exr: no such file") != std::string::npos);
+    check_line(p.compare({"a.exr", "b.exr", "--junit", "none/j.xml"}), 2, "none/j.xml: the folder does not exist");
+}
+
+TEST_CASE("--bless makes the picture the reference, unless no reference may be so") {
+    const Pair p;
+    const auto bytes = [&](const std::string& name) {
+        std::ifstream file(p.folder / name, std::ios::binary);
+        return std::string{std::istreambuf_iterator<char>(file), {}};
+    };
+    CHECK(p.compare({"a.exr", "b.exr", "--bless"}).code == 0);
+    CHECK(bytes("b.exr") == bytes("a.exr"));
+    CHECK(p.compare({"a.exr", "b.exr", "--exact"}).code == 0);
+    // One that was not there.
+    CHECK(p.compare({"a.exr", "new.exr", "--bless"}).code == 0);
+    CHECK(bytes("new.exr") == bytes("a.exr"));
+    PictureData broken = p.reference;
+    broken.values[0] = std::numeric_limits<float>::quiet_NaN();
+    p.write("nan.exr", broken);
+    const std::string before = bytes("b.exr");
+    check_line(p.compare({"nan.exr", "b.exr", "--bless"}), 2, "nan.exr: pixel 0,0 is NaN in channel R");
+    check_line(p.compare({"a.exr", "b.png", "--bless"}), 2, "b.png: is no file of the same kind as a.exr");
+    CHECK(bytes("b.exr") == before);
+    CHECK_FALSE(std::filesystem::exists(p.folder / "b.png"));
+}
+
 TEST_CASE("pictures of bytes are compared as light, by LDR-FLIP") {
     const Pair p;
     p.write("white.png", uniform(30, 20, 1, 1, 1));
@@ -193,11 +279,12 @@ TEST_CASE("pictures of bytes are compared as light, by LDR-FLIP") {
     CHECK(j["flip"]["kind"] == "LDR-FLIP");
     CHECK(j["flip"]["mean"] == doctest::Approx(0.9674).epsilon(1e-4));
     CHECK_FALSE(j["flip"].contains("exposures"));
-    CHECK(j["energy_ratio"].is_null());
+    CHECK(j["energy_bias"].is_null());
+    CHECK(p.compare({"white.png", "black.png", "--metric", "bias", "--tolerance", "1e9"}).code == 1);
     CHECK(j["relmse"].is_null());
     CHECK(p.json({"white.png", "grey.png"})["rmse"] == doctest::Approx(1 - 0.2158605).epsilon(1e-6));
-    CHECK(p.compare({"black.png", "black.png"}).out.find("energy ratio  1\n") != std::string::npos);
-    CHECK(p.compare({"white.png", "black.png"}).out.find("undefined: the reference is black") != std::string::npos);
+    CHECK(p.compare({"black.png", "black.png"}).out.find("energy bias   +0 %\n") != std::string::npos);
+    CHECK(p.compare({"white.png", "black.png"}).out.find("energy bias   undefined\n") != std::string::npos);
     p.write("white.exr", uniform(30, 20, 1, 1, 1));
     CHECK(p.json({"white.png", "white.exr"})["flip"]["kind"] == "HDR-FLIP");
     CHECK(p.compare({"white.png", "white.exr", "--exact"}).code == 0);

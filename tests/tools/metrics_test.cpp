@@ -37,7 +37,11 @@ TEST_CASE("two pixels, by hand") {
     CHECK(d.rmse == doctest::Approx(std::sqrt((1.0 + 4.0) / 6.0)).epsilon(1e-14));
     // A tenth of the mean is 0.35; its square 0.1225.
     CHECK(d.relative_mse == doctest::Approx((1.0 / 9.1225 + 4.0 / 25.1225) / 6.0).epsilon(1e-14));
-    CHECK(d.energy_ratio == doctest::Approx(20.0 / 21.0).epsilon(1e-14));
+    CHECK(d.epsilon == doctest::Approx(0.35).epsilon(1e-14));
+    // The larger of the two relative errors, since the smaller one is not enough for 99 % of six.
+    CHECK(d.percentile_99 == doctest::Approx(2 / std::sqrt(25.1225)).epsilon(1e-14));
+    CHECK(d.smape == doctest::Approx((1 / 3.5 + 2 / 4.0) / 6.0).epsilon(1e-14));
+    CHECK(d.energy_bias == doctest::Approx(-1.0 / 21.0).epsilon(1e-14));
     CHECK(d.largest.x == 1);
     CHECK(d.largest.y == 0);
     CHECK(d.largest.channel == 1);
@@ -45,12 +49,15 @@ TEST_CASE("two pixels, by hand") {
     CHECK(d.largest.reference == 5);
 }
 
-TEST_CASE("which picture is the reference matters to relMSE and the energy ratio") {
+TEST_CASE("which picture is the reference matters to relMSE and the energy bias") {
     const PictureData a = picture_of(1, 1, rgb, {1, 1, 1}), b = picture_of(1, 1, rgb, {2, 2, 2});
     CHECK(measure(a, b, {false}).relative_mse == doctest::Approx(1.0 / 4.04).epsilon(1e-14));
     CHECK(measure(b, a, {false}).relative_mse == doctest::Approx(1.0 / 1.01).epsilon(1e-14));
-    CHECK(measure(a, b, {false}).energy_ratio == 0.5);
-    CHECK(measure(b, a, {false}).energy_ratio == 2.0);
+    CHECK(measure(a, b, {false}).energy_bias == -0.5);
+    CHECK(measure(b, a, {false}).energy_bias == 1.0);
+    // But not to SMAPE.
+    CHECK(measure(a, b, {false}).smape == doctest::Approx(2.0 / 3.0).epsilon(1e-14));
+    CHECK(measure(b, a, {false}).smape == doctest::Approx(2.0 / 3.0).epsilon(1e-14));
 }
 
 TEST_CASE("what is left out counts nowhere: not in the sums, not in the mean, not as NaN") {
@@ -64,20 +71,37 @@ TEST_CASE("what is left out counts nowhere: not in the sums, not in the mean, no
     CHECK(d.reference_mean == 3.5);
     CHECK(d.rmse == doctest::Approx(std::sqrt(5.0 / 6.0)).epsilon(1e-14));
     CHECK(d.relative_mse == doctest::Approx((1.0 / 9.1225 + 4.0 / 25.1225) / 6.0).epsilon(1e-14));
-    CHECK(d.energy_ratio == doctest::Approx(20.0 / 21.0).epsilon(1e-14));
+    CHECK(d.energy_bias == doctest::Approx(-1.0 / 21.0).epsilon(1e-14));
+    CHECK(d.smape == doctest::Approx((1 / 3.5 + 2 / 4.0) / 6.0).epsilon(1e-14));
     CHECK(d.largest.x == 2);
     CHECK_NOTHROW(check_finite(reference, mask, "b.exr"));
     Executor executor(1);
     CHECK(measure_flip(executor, test, reference, mask, 67).largest < 1.0);
 }
 
+TEST_CASE("99 % of the values do not exceed the 99th percentile, and it is one of them") {
+    // Errors of 0.01, 0.02, ... in a grey picture, in any order.
+    for (const int count : {1, 2, 99, 100, 101, 250}) {
+        PictureData reference = uniform(count, 1, 1, 1, 1);
+        reference.channels = {"Y"};
+        reference.values.resize(static_cast<std::size_t>(count));
+        PictureData test = reference;
+        for (int k = 0; k < count; ++k) test.values[static_cast<std::size_t>(k)] += 0.01f * static_cast<float>((k * 7919) % count + 1);
+        const double largest_allowed = std::ceil(0.99 * count - 1e-9);
+        CHECK(measure(test, reference, nothing_left_out(reference)).percentile_99 == doctest::Approx(0.01 * largest_allowed / std::sqrt(1.01)).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("a black reference") {
     const PictureData black = uniform(2, 2, 0, 0, 0), lit = uniform(2, 2, 0, 1e-3f, 0);
     const PictureDifference same = measure(black, black, nothing_left_out(black)), missed = measure(lit, black, nothing_left_out(black));
     CHECK(same.relative_mse == 0);
-    CHECK(same.energy_ratio == 1);
+    CHECK(same.energy_bias == 0);
+    CHECK(same.percentile_99 == 0);
+    CHECK(same.smape == 0);
     CHECK(std::isinf(missed.relative_mse));
-    CHECK(std::isnan(missed.energy_ratio));
+    CHECK(std::isnan(missed.energy_bias));
+    CHECK(missed.smape == doctest::Approx(2.0 / 3.0));
     CHECK(missed.rmse == doctest::Approx(1e-3 / std::sqrt(3.0)));
 }
 
@@ -87,7 +111,8 @@ TEST_CASE("equal pictures differ in nothing") {
     CHECK(d.differing == 0);
     CHECK(d.rmse == 0);
     CHECK(d.relative_mse == 0);
-    CHECK(d.energy_ratio == 1);
+    CHECK(d.energy_bias == 0);
+    CHECK(d.percentile_99 == 0);
     CHECK(compare_bits(p, p, nothing_left_out(p)).differing == 0);
 }
 

@@ -111,6 +111,14 @@ void check_picture_path(const std::string& path) {
     check_file_path(path);
 }
 
+std::vector<unsigned char> png_file(const PictureData& picture, float exposure) {
+    const PictureData rgb = picture.channels.size() > 3 ? first_three_channels(picture) : picture;
+    OIIO::ImageSpec spec(rgb.width, rgb.height, static_cast<int>(rgb.channels.size()), OIIO::TypeDesc::UINT8);
+    spec.channelnames = rgb.channels;
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return encoded("picture.png", spec, rgb, srgb_bytes(rgb, exposure));
+}
+
 std::string write_picture(const std::string& path, const PictureData& picture, float exposure) {
     check_picture_path(path);
     const std::string ending = picture_ending(path);

@@ -23,6 +23,9 @@ struct PictureData {
 // HDR and PNG take the first three channels. Throws std::runtime_error with the file and the reason.
 std::string write_picture(const std::string& path, const PictureData& picture, float exposure = 0.0f);
 
+// The bytes of a PNG file, as write_picture would write it.
+std::vector<unsigned char> png_file(const PictureData& picture, float exposure = 0.0f);
+
 // ".exr" of "a.EXR".
 std::string picture_ending(const std::string& path);
 

@@ -57,6 +57,9 @@ public:
             while (entry != entry_end || large != large_end) {
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
                 const std::uint32_t record = take_large ? *large++ : *entry++;
+                // A tile's records lie anywhere in their batch's.
+                constexpr std::ptrdiff_t ahead = 8;
+                if (entry_end - entry > ahead) __builtin_prefetch(draw_.raster_records + (batch.first_record + entry[ahead]) * static_cast<std::size_t>(draw_.record_bytes));
                 if (only_record < 0 || record == static_cast<std::uint32_t>(only_record)) draw_record(batch.first_record + record);
             }
         }

@@ -1,5 +1,6 @@
 #include "tools/whole_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,13 +13,43 @@ namespace nephroid {
 
 namespace {
 
-// Returns the error number, 0 for none.
-int write_bytes(const std::string& path, std::string_view bytes) {
+// All of these return the error number, 0 for none.
+
+int write_to(std::FILE* file, std::string_view bytes) {
+    int error = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() ? 0 : errno ? errno : EIO;
+    if (std::fflush(file) != 0 && error == 0) error = errno ? errno : EIO;
+    return error;
+}
+
+// Whoever is ended in the middle of writing leaves a file that has a name: this one gets its own when all is there. ENOTSUP
+// where the file system has no files without one.
+int write_nameless(const std::string& folder, const std::string& path, std::string_view bytes) {
+#ifdef O_TMPFILE
+    const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor < 0) return ENOTSUP;
+    std::FILE* file = fdopen(descriptor, "wb");
+    if (!file) return close(descriptor), ENOTSUP;
+    errno = 0;
+    int error = write_to(file, bytes);
+    if (error == 0) {
+        unlink(path.c_str());
+        const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
+        if (linkat(AT_FDCWD, name.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) != 0) error = ENOTSUP;
+    }
+    // Closing can tell of a full disk, too.
+    if (std::fclose(file) != 0 && error == 0) error = errno ? errno : EIO;
+    return error;
+#else
+    static_cast<void>(folder), static_cast<void>(path), static_cast<void>(bytes);
+    return ENOTSUP;
+#endif
+}
+
+int write_named(const std::string& path, std::string_view bytes) {
     errno = 0;
     std::FILE* file = std::fopen(path.c_str(), "wb");
     if (!file) return errno ? errno : EIO;
-    int error = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() ? 0 : errno ? errno : EIO;
-    // Closing writes what is left: a full disk can show itself only here.
+    int error = write_to(file, bytes);
     if (std::fclose(file) != 0 && error == 0) error = errno ? errno : EIO;
     return error;
 }
@@ -38,9 +69,11 @@ void check_file_path(const std::string& path) {
 void write_whole_file(const std::string& path, std::string_view bytes) {
     check_file_path(path);
     // Of this process alone, and not made from the file's name, which may be as long as names can be.
-    const std::string temporary =
-        (std::filesystem::path(path).parent_path() / (".nephroid." + std::to_string(getpid()) + ".part")).string();
-    std::error_code error(write_bytes(temporary, bytes), std::generic_category());
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const std::string temporary = (folder / (".nephroid." + std::to_string(getpid()) + ".part")).string();
+    int failure = write_nameless(folder.empty() ? "." : folder.string(), temporary, bytes);
+    if (failure == ENOTSUP) failure = write_named(temporary, bytes);
+    std::error_code error(failure, std::generic_category());
     if (!error) std::filesystem::rename(temporary, path, error);
     if (!error) return;
     std::error_code ignored;

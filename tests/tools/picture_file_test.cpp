@@ -10,7 +10,6 @@
 
 #include "tests/tools/pictures.hpp"
 #include "tests/tools/program.hpp"
-#include "tools/whole_file.hpp"
 
 using namespace nephroid;
 using namespace test;
@@ -170,25 +169,4 @@ TEST_CASE("refused: more pixels than are read, before memory is taken for them")
     CAPTURE(said);
     CHECK(said.starts_with(folder.file("huge.png") + ": "));
     CHECK(said.find("1000000 x 1000000 pixels") != std::string::npos);
-}
-
-TEST_CASE("files are whole or not there") {
-    const Folder folder;
-    const std::string path = folder.file("a.json");
-    write_whole_file(path, "first");
-    write_whole_file(path, "second");
-    std::string text;
-    std::getline(std::ifstream(path), text);
-    CHECK(text == "second");
-    CHECK(folder.files() == std::vector<std::string>{"a.json"});
-    CHECK_THROWS_WITH_AS(write_whole_file("", "x"), "a file to write to has an empty name", std::runtime_error);
-    CHECK_THROWS_WITH_AS(write_whole_file(folder.path().string(), "x"), (folder.path().string() + ": is a folder").c_str(),
-                         std::runtime_error);
-    CHECK_THROWS_WITH_AS(write_whole_file(folder.file("none/a.json"), "x"),
-                         (folder.file("none/a.json") + ": the folder does not exist").c_str(), std::runtime_error);
-    // As long a name as there can be.
-    const std::string longest = folder.file(std::string(250, 'n') + ".json");
-    write_whole_file(longest, "x");
-    CHECK(std::filesystem::file_size(longest) == 1);
-    CHECK(folder.files().size() == 2);
 }

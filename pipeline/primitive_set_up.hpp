@@ -268,26 +268,35 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         store_rows4(words, offset, w(left), w(top), w(right), w(bottom));
         store_rows4(words + 4, offset, to_float(sx) * (1.0f / subpixels), to_float(sy) * (1.0f / subpixels), size, z);
         store_rows4(words + 8, offset, clip_w, w(vertex + I(static_cast<std::int32_t>(batch.first_vertex))), w(primitive_id), w(target_index));
-        // Where every point lies in one tile, the tiles are noted in lanes.
-        const M one_tile = (((left ^ (right - 1)) | (top ^ (bottom - 1))) & -tile_size) == 0;
-        if (none(drawn & !one_tile) && batch.pair_count + lanes <= draw.pair_capacity) {
-            I first_tile(draw.targets->first_tile), tiles_x(draw.targets->tiles_x);
-            if (!one_target) {
-                const I target_word = target_index * static_cast<int>(sizeof(RasterTarget) / 4);
-                first_tile = gather(&draw.targets->first_tile, target_word), tiles_x = gather(&draw.targets->tiles_x, target_word);
-            }
-            const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
-            lowest_tile = select(drawn, min(tile, lowest_tile), lowest_tile);
-            highest_tile = select(drawn, max(tile, highest_tile), highest_tile);
-            compress_lanes(batch.pair_tile + batch.pair_count, as_uint(tile), drawn_bits);
-            store_lanes(batch.pair_record + batch.pair_count, as_uint(lane_index<F>() + batch.record_count));
-            batch.pair_count += at - batch.record_count;
-            batch.record_count = at;
-            continue;
+        // Points that lie in one tile are noted in lanes, those between two of the others one by one.
+        const M one_tile = drawn & ((((left ^ (right - 1)) | (top ^ (bottom - 1))) & -tile_size) == 0);
+        I first_tile(draw.targets->first_tile), tiles_x(draw.targets->tiles_x);
+        if (!one_target) {
+            const I target_word = target_index * static_cast<int>(sizeof(RasterTarget) / 4);
+            first_tile = gather(&draw.targets->first_tile, target_word), tiles_x = gather(&draw.targets->tiles_x, target_word);
         }
-        for (; batch.record_count < at; ++batch.record_count) {
+        const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
+        const bool room = batch.pair_count + lanes <= draw.pair_capacity;
+        const std::uint32_t in_lanes = room ? mask_bits(one_tile) : 0u;
+        if (in_lanes) {
+            lowest_tile = select(one_tile, min(tile, lowest_tile), lowest_tile);
+            highest_tile = select(one_tile, max(tile, highest_tile), highest_tile);
+        }
+        for (std::uint32_t rest = drawn_bits; rest;) {
+            const std::uint32_t others = rest & ~in_lanes, run = others ? rest & ((others & (~others + 1u)) - 1u) : rest;
+            if (run && batch.pair_count + lanes <= draw.pair_capacity) {
+                compress_lanes(batch.pair_tile + batch.pair_count, as_uint(tile), run);
+                store_lanes(batch.pair_record + batch.pair_count, as_uint(lane_index<F>() + batch.record_count));
+                const int count = __builtin_popcount(run);
+                batch.pair_count += count;
+                batch.record_count += count;
+                rest &= ~run;
+                continue;
+            }
             const PointRecord& r = records[batch.record_count];
             bin_record(draw, batch, batch.record_count, r.target, r.left, r.top, r.right - 1, r.bottom - 1);
+            ++batch.record_count;
+            rest &= rest - 1;
         }
     }
     for (int l = 0; l < lanes; ++l) {

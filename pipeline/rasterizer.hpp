@@ -53,13 +53,16 @@ public:
             if (tile < batch.first_tile || tile > batch.last_tile) continue;
             const std::uint32_t *entry = batch.entries + batch.bin[tile - batch.first_tile], *entry_end = batch.entries + batch.bin[tile - batch.first_tile + 1];
             const std::uint32_t *large = batch.everywhere, *large_end = large + batch.everywhere_count;
+            constexpr std::ptrdiff_t ahead = 8;
+            const std::uint32_t* const asked_for = entry_end - std::min(ahead, entry_end - entry);
+            const std::size_t record_bytes = static_cast<std::size_t>(draw_.record_bytes);
+            const std::byte* const records = draw_.raster_records + batch.first_record * record_bytes;
             // Both lists ascend: merge them.
             while (entry != entry_end || large != large_end) {
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
                 const std::uint32_t record = take_large ? *large++ : *entry++;
                 // A tile's records lie anywhere in their batch's.
-                constexpr std::ptrdiff_t ahead = 8;
-                if (entry_end - entry > ahead) __builtin_prefetch(draw_.raster_records + (batch.first_record + entry[ahead]) * static_cast<std::size_t>(draw_.record_bytes));
+                if (entry < asked_for) __builtin_prefetch(records + entry[ahead] * record_bytes);
                 if (only_record < 0 || record == static_cast<std::uint32_t>(only_record)) draw_record(batch.first_record + record);
             }
         }

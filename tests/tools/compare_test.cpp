@@ -2,8 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -230,10 +228,7 @@ TEST_CASE("regions: where the caustic is more than half, its layer, and what is 
 
 TEST_CASE("--junit: a test case that passed, failed, or could not be run") {
     const Pair p;
-    const auto xml = [&] {
-        std::ifstream file(p.folder / "j.xml");
-        return std::string{std::istreambuf_iterator<char>(file), {}};
-    };
+    const auto xml = [&] { return content_of(p.folder / "j.xml"); };
     CHECK(p.compare({"b.exr", "b.exr", "--junit", "j.xml"}).code == 0);
     CHECK(xml().find("tests=\"1\" failures=\"0\" errors=\"0\"") != std::string::npos);
     CHECK(xml().find("<testcase classname=\"b.exr\" name=\"b.exr\"/>") != std::string::npos);
@@ -250,10 +245,7 @@ TEST_CASE("--junit: a test case that passed, failed, or could not be run") {
 
 TEST_CASE("--bless makes the picture the reference, unless no reference may be so") {
     const Pair p;
-    const auto bytes = [&](const std::string& name) {
-        std::ifstream file(p.folder / name, std::ios::binary);
-        return std::string{std::istreambuf_iterator<char>(file), {}};
-    };
+    const auto bytes = [&](const std::string& name) { return content_of(p.folder / name); };
     CHECK(p.compare({"a.exr", "b.exr", "--bless"}).code == 0);
     CHECK(bytes("b.exr") == bytes("a.exr"));
     CHECK(p.compare({"a.exr", "b.exr", "--exact"}).code == 0);

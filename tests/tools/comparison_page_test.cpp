@@ -1,8 +1,9 @@
 // The page of a comparison: what it is made of, and what a browser makes of it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <iterator>
 
 #include "tests/tools/pictures.hpp"
 #include "tests/tools/program.hpp"
@@ -11,11 +12,6 @@ using namespace nephroid;
 using namespace test;
 
 namespace {
-
-std::string text_of(const Folder& folder, const std::string& name) {
-    std::ifstream file(folder / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::string decoded(const std::string& base64) {
     const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -67,7 +63,7 @@ Outcome browse(const Folder& folder, const std::string& address) {
 
 TEST_CASE("the page holds both pictures as a screen shows them, the heat, the numbers and the verdict") {
     const Page p;
-    const std::string page = text_of(p.folder, "page.html");
+    const std::string page = content_of(p.folder / "page.html");
     // The same for all: a PNG of the picture, darker until 99 % of the reference's values fit.
     std::vector<float> sorted = p.reference.values;
     std::sort(sorted.begin(), sorted.end());
@@ -92,7 +88,7 @@ TEST_CASE("the page holds both pictures as a screen shows them, the heat, the nu
 
 TEST_CASE("the page asks the network for nothing, and names in it are no markup") {
     const Page p("a<b>&\"c\".exr");
-    const std::string page = text_of(p.folder, "page.html");
+    const std::string page = content_of(p.folder / "page.html");
     CHECK(page.find("a&lt;b&gt;&amp;&quot;c&quot;.exr") != std::string::npos);
     CHECK(page.find("a<b>") == std::string::npos);
     CHECK(page.find("//") == page.find("//", page.find("base64,")));  // no address before the first picture

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -114,6 +116,11 @@ std::vector<Outcome> run_all(const Folder& folder, const std::vector<std::vector
     work();
     for (std::thread& t : others) t.join();
     return outcomes;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -44,5 +44,7 @@ Outcome run_nephroid(const Folder& folder, std::vector<std::string> arguments, c
 std::vector<Outcome> run_all(const Folder& folder, const std::vector<std::vector<std::string>>& calls);
 
 std::vector<std::string> lines_of(const std::string& text);
+// All bytes of a file; none where it cannot be read.
+std::string content_of(const std::filesystem::path& file);
 
 }  // namespace test

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "tests/tools/program.hpp"
@@ -17,21 +16,12 @@
 using namespace nephroid;
 using namespace test;
 
-namespace {
-
-std::string content(const Folder& folder, const std::string& name) {
-    std::ifstream file(folder / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-}  // namespace
-
 TEST_CASE("a file is what was written, and replaces what was there") {
     const Folder folder;
     const std::string large(3 << 20, 'x');
     for (const std::string& bytes : {std::string("first"), large, std::string(), std::string("a\0b", 3)}) {
         write_whole_file(folder.file("file"), bytes);
-        CHECK(content(folder, "file") == bytes);
+        CHECK(content_of(folder / "file") == bytes);
         CHECK(folder.files() == std::vector<std::string>{"file"});
     }
     // As other new files are, not for the owner alone.
@@ -78,6 +68,6 @@ TEST_CASE("who is ended in the middle of writing leaves the old file, and no pie
     REQUIRE(waitpid(child, &status, 0) == child);
     CHECK(WIFSIGNALED(status));
     CHECK(WTERMSIG(status) == SIGXFSZ);
-    CHECK(content(folder, "file") == "old");
+    CHECK(content_of(folder / "file") == "old");
     CHECK(folder.files() == std::vector<std::string>{"file"});
 }

@@ -146,10 +146,13 @@ template <Format format, MergeMode mode>
     else store_texel<format>(at, color);
 }
 
+// True if no lane before the last that is drawn is not.
+inline bool without_gaps(std::uint32_t mask) { return (mask & (mask + 1)) == 0; }
+
 template <Format format, MergeMode mode, class Texel>
 [[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, const Texel& texel, const float* colors, std::uint32_t mask) {
     constexpr int channels = kept_channels<format, mode>;
-    if ((mask & (mask + 1)) == 0) {  // all from the first lane on
+    if (without_gaps(mask)) {
         for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode>(how, texel(l), colors + channels * l);
     } else {
         for (; mask; mask &= mask - 1) {
@@ -274,9 +277,9 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
                 merge_rows_of_four<F, format, mode>(texel(0), work.pitch, colors, mask);
                 continue;
             }
-            if (group.layout == GroupLayout::Rectangle && aligned && (mask & (mask + 1)) == 0) {
+            if (group.layout == GroupLayout::Rectangle && aligned && without_gaps(mask)) {
                 int count = __builtin_popcount(mask);
-                for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && (work.masks[g + 1] & (work.masks[g + 1] + 1)) == 0; ++g)
+                for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && without_gaps(work.masks[g + 1]); ++g)
                     count += __builtin_popcount(work.masks[g + 1]);
                 merge_rectangle<F, channels, mode>(work.first_row, work.pitch, group.left, group.right, group.x[0], group.y[0], colors, count);
                 continue;

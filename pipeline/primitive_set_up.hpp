@@ -276,13 +276,11 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
             first_tile = gather(&draw.targets->first_tile, target_word), tiles_x = gather(&draw.targets->tiles_x, target_word);
         }
         const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
-        const bool room = batch.pair_count + lanes <= draw.pair_capacity;
-        const std::uint32_t in_lanes = room ? mask_bits(one_tile) : 0u;
-        if (in_lanes) {
-            lowest_tile = select(one_tile, min(tile, lowest_tile), lowest_tile);
-            highest_tile = select(one_tile, max(tile, highest_tile), highest_tile);
-        }
+        lowest_tile = select(one_tile, min(tile, lowest_tile), lowest_tile);
+        highest_tile = select(one_tile, max(tile, highest_tile), highest_tile);
+        const std::uint32_t in_lanes = mask_bits(one_tile);
         for (std::uint32_t rest = drawn_bits; rest;) {
+            // Those before the next of the others, as long as there is room for a register.
             const std::uint32_t others = rest & ~in_lanes, run = others ? rest & ((others & (~others + 1u)) - 1u) : rest;
             if (run && batch.pair_count + lanes <= draw.pair_capacity) {
                 compress_lanes(batch.pair_tile + batch.pair_count, as_uint(tile), run);

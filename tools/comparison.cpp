@@ -67,11 +67,6 @@ const std::vector<std::string> caustic_layer{"caustic.R", "caustic.G", "caustic.
 bool has_channels(const PictureData& picture, const std::vector<std::string>& names) {
     return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return picture.channel(name) >= 0; });
 }
-bool is_finite(const PictureData& picture, const PixelMask& mask) {
-    for (std::size_t v = 0; v < picture.values.size(); ++v)
-        if (!mask[v / picture.channels.size()] && !std::isfinite(picture.values[v])) return false;
-    return true;
-}
 
 // Left out is what is left out of the picture, and where the caustic is at most half of it.
 PixelMask not_caustic(const PictureData& reference, const PictureData& caustic, PixelMask mask) {
@@ -84,8 +79,7 @@ void add_regions(const CompareOptions& a, const PictureData& test, const Picture
     const Region picture = regions[0];
     PixelMask rest = picture.mask;
     rest.flip();
-    const bool has_layer = has_channels(reference, caustic_layer) && picture.reference.channels == std::vector<std::string>{"R", "G", "B"};
-    if (has_layer) {
+    if (has_channels(reference, caustic_layer) && picture.reference.channels == std::vector<std::string>{"R", "G", "B"}) {
         const PictureData caustic = select_channels(reference, caustic_layer, a.reference);
         check_finite(caustic, picture.mask, a.reference);
         regions.push_back({"caustic-pixels", picture.test, picture.reference, not_caustic(picture.reference, caustic, picture.mask), {}});
@@ -94,7 +88,7 @@ void add_regions(const CompareOptions& a, const PictureData& test, const Picture
             check_finite(regions.back().test, picture.mask, a.test);
         }
     }
-    if (is_finite(picture.test, rest) && is_finite(picture.reference, rest)) regions.push_back({"left-out", picture.test, picture.reference, rest, {}});
+    if (!first_not_finite(picture.test, rest) && !first_not_finite(picture.reference, rest)) regions.push_back({"left-out", picture.test, picture.reference, rest, {}});
     std::erase_if(regions, [](const Region& r) { return leaves_out_all(r.mask); });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/markup.hpp"
+#include "tools/percentile.hpp"
 #include "tools/printf_text.hpp"
 
 namespace nephroid {
@@ -29,9 +30,8 @@ float exposure_for_eyes(const PictureData& reference, const PixelMask& mask) {
     std::vector<float> values;
     for (std::size_t v = 0; v < reference.values.size(); ++v)
         if (!mask[v / reference.channels.size()]) values.push_back(reference.values[v]);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() * 99 + 99) / 100 - 1);
-    std::nth_element(values.begin(), at, values.end());
-    return *at > 1 ? -std::log2(*at) : 0.0f;
+    const float bright = percentile_99_of(values);
+    return bright > 1 ? -std::log2(bright) : 0.0f;
 }
 
 std::string image(const char* name, const std::vector<unsigned char>& png, const PictureData& picture) {

@@ -8,6 +8,7 @@
 
 #include "pipeline/srgb.hpp"
 #include "tools/joined.hpp"
+#include "tools/percentile.hpp"
 
 namespace nephroid {
 
@@ -29,13 +30,6 @@ PixelDifference difference_at(const PictureData& test, const PictureData& refere
 double bias(double test, double reference) {
     if (reference != 0) return (test - reference) / reference;
     return test == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
-}
-
-// The smallest value that at least 99 % of all do not exceed; there is one.
-template <class T> T percentile_99_of(std::vector<T>& values) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() * 99 + 99) / 100 - 1);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
 }
 
 // As red, green and blue; what is left out as `fill` has it.
@@ -65,19 +59,22 @@ PictureData select_channels(const PictureData& picture, const std::vector<std::s
     return selected;
 }
 
+std::optional<std::size_t> first_not_finite(const PictureData& picture, const PixelMask& mask) {
+    for (std::size_t value = 0; value < picture.values.size(); ++value)
+        if (!mask[value / picture.channels.size()] && !std::isfinite(picture.values[value])) return value;
+    return std::nullopt;
+}
+
 void check_finite(const PictureData& picture, const PixelMask& mask, const std::string& path) {
-    for_each_compared(picture, mask, [&](std::size_t pixel, std::size_t first) {
-        for (std::size_t c = 0; c < picture.channels.size(); ++c) {
-            const float v = picture.values[first + c];
-            if (std::isfinite(v)) continue;
-            throw std::runtime_error(path + ": pixel " + std::to_string(pixel % picture.width) + "," +
-                                     std::to_string(pixel / picture.width) + " is " +
-                                     (std::isnan(v) ? "NaN"
-                                      : v > 0       ? "infinite"
-                                                    : "-infinite") +
-                                     " in channel " + picture.channels[c]);
-        }
-    });
+    const std::optional<std::size_t> value = first_not_finite(picture, mask);
+    if (!value) return;
+    const std::size_t channels = picture.channels.size(), pixel = *value / channels;
+    const float v = picture.values[*value];
+    throw std::runtime_error(path + ": pixel " + std::to_string(pixel % picture.width) + "," + std::to_string(pixel / picture.width) + " is " +
+                             (std::isnan(v) ? "NaN"
+                              : v > 0       ? "infinite"
+                                            : "-infinite") +
+                             " in channel " + picture.channels[*value % channels]);
 }
 
 PictureDifference measure(const PictureData& test, const PictureData& reference, const PixelMask& mask) {

@@ -1,6 +1,8 @@
 // How far a picture is from its reference, in numbers and as a picture.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,10 @@ using PixelMask = std::vector<bool>;
 // The named channels of a picture, in that order. Throws std::runtime_error with `path` and the first that is missing.
 PictureData select_channels(const PictureData& picture, const std::vector<std::string>& names, const std::string& path);
 
-// Throws std::runtime_error naming the file, the pixel and the channel of the first NaN or infinity that is not left out.
+// The index of the first value that is NaN or infinite and not left out.
+std::optional<std::size_t> first_not_finite(const PictureData& picture, const PixelMask& mask);
+
+// Throws std::runtime_error naming the file, the pixel and the channel of that.
 void check_finite(const PictureData& picture, const PixelMask& mask, const std::string& path);
 
 struct PixelDifference {

@@ -66,6 +66,15 @@ std::vector<unsigned char> srgb_bytes(const PictureData& p, float exposure) {
     return bytes;
 }
 
+// What a file says of a picture: floats as they are, or bytes on the sRGB curve.
+OIIO::ImageSpec spec_of(const PictureData& picture, bool linear) {
+    OIIO::ImageSpec spec(picture.width, picture.height, static_cast<int>(picture.channels.size()), linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+    spec.channelnames = picture.channels;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    return spec;
+}
+
 // A file of the format that the path's ending says, in memory: not all of OpenImageIO's formats notice that a disk is full.
 // `bytes` are the picture's, or empty where floats are written. Throws std::runtime_error.
 std::vector<unsigned char> encoded(const std::string& path, const OIIO::ImageSpec& spec, const PictureData& picture,
@@ -113,10 +122,7 @@ void check_picture_path(const std::string& path) {
 
 std::vector<unsigned char> png_file(const PictureData& picture, float exposure) {
     const PictureData rgb = picture.channels.size() > 3 ? first_three_channels(picture) : picture;
-    OIIO::ImageSpec spec(rgb.width, rgb.height, static_cast<int>(rgb.channels.size()), OIIO::TypeDesc::UINT8);
-    spec.channelnames = rgb.channels;
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    return encoded("picture.png", spec, rgb, srgb_bytes(rgb, exposure));
+    return encoded("picture.png", spec_of(rgb, false), rgb, srgb_bytes(rgb, exposure));
 }
 
 std::string write_picture(const std::string& path, const PictureData& picture, float exposure) {
@@ -127,12 +133,7 @@ std::string write_picture(const std::string& path, const PictureData& picture, f
     const PictureData rgb = narrow ? first_three_channels(picture) : PictureData();
     const PictureData& source = narrow ? rgb : picture;
     const std::vector<unsigned char> bytes = linear ? std::vector<unsigned char>() : srgb_bytes(source, exposure);
-    OIIO::ImageSpec spec(source.width, source.height, static_cast<int>(source.channels.size()),
-                         linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-    spec.channelnames = source.channels;
-    spec.attribute("compression", "zip");
-    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
-
+    const OIIO::ImageSpec spec = spec_of(source, linear);
     const std::vector<unsigned char> file = encoded(path, spec, source, bytes);
     write_whole_file(path, {reinterpret_cast<const char*>(file.data()), file.size()});
     // Stored with a shared exponent: what counts is what is read back.

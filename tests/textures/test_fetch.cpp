@@ -64,3 +64,56 @@ TEST_CASE("Fetches give texels by their numbers, and zeros where there are none"
     CHECK(inside > 10000);
     CHECK(outside > 10000);
 }
+
+TEST_CASE("Fetches of neighbours, of one texel by many, and of what only looks like a row") {
+    // From a lane's number to the texel, relative to a place: shaders that read their own pixel ask for rows of four, which
+    // are loaded as such; what is no row of four in one lane, or lies outside in one, must not be.
+    struct Pattern {
+        const char* name;
+        std::array<int, 2> (*at)(int lane);
+    };
+    const Pattern patterns[] = {
+        {"rows of four", [](int l) { return std::array{l % 4, l / 4}; }},
+        {"a row of sixteen", [](int l) { return std::array{l, 0}; }},
+        {"rows of four, each elsewhere", [](int l) { return std::array{l % 4 + l / 4 * 5 % 11, l / 4 * 7 % 5}; }},
+        {"one texel", [](int) { return std::array{0, 0}; }},
+        {"one texel for four lanes", [](int l) { return std::array{l / 4, 0}; }},
+        {"two texels, twice", [](int l) { return std::array{l % 2, l / 4}; }},
+        {"rows backwards", [](int l) { return std::array{3 - l % 4, l / 4}; }},
+        {"columns", [](int l) { return std::array{l / 4, l % 4}; }},
+        {"rows of four but in the last lane", [](int l) { return std::array{l % 16 == 15 ? 0 : l % 4, l / 4}; }},
+        {"rows of four but in the third lane", [](int l) { return std::array{l == 2 ? 3 : l % 4, l / 4}; }},
+        {"every other texel", [](int l) { return std::array{l % 4 * 2, l / 4}; }},
+        {"texels in the order of memory", [](int l) { return std::array{l % 3, l / 3}; }},
+    };
+    Random random(31);
+    int inside = 0, outside = 0;
+    for (const TextureKind kind : {TextureKind::Texture2D, TextureKind::Texture2DArray, TextureKind::Texture3D, TextureKind::TextureCube})
+        for (const Format format : {Format::RGBA32F, Format::RGBA16F, Format::R32F})
+            for (const Shape& shape : {Shape{3, 7, 2}, Shape{16, 9, 2}, Shape{21, 17, 2}}) {
+                Texture t = make_texture(kind, format, shape);
+                REQUIRE(t.faults().empty());
+                fill_random(t, random);
+                for (const Pattern& pattern : patterns)
+                    for (const Isa isa : available_isas())
+                        for (int y = -2; y <= t.height(0); y += 2) {
+                            Batch b(16 * 24);
+                            for (std::size_t i = 0; i < b.x.size(); ++i) {
+                                const auto [dx, dy] = pattern.at(static_cast<int>(i % 16));
+                                b.x[i] = static_cast<int>(i / 16) - 2 + dx;
+                                b.y[i] = y + dy;
+                                b.z[i] = kind == TextureKind::Texture2D ? 0 : 1;
+                            }
+                            REQUIRE(run(isa, Read::Fetch, b.of(t, {}, 0)));
+                            for (std::size_t i = 0; i < b.x.size(); ++i) {
+                                const auto right = expected(t, b.x[i], b.y[i], b.z[i], 0);
+                                (right == std::array<std::uint32_t, 4>{} ? outside : inside)++;
+                                for (std::size_t k = 0; k < 4; ++k)
+                                    if (bits(b.rgba[k][i]) != right[k])
+                                        FAIL(name_of(isa), " ", name_of(kind), " ", name_of(format), ", ", pattern.name, ", lane ", i % 16, " at ", b.x[i], " ", b.y[i], " channel ", k, " is ", bits(b.rgba[k][i]), " and should be ", right[k]);
+                            }
+                        }
+            }
+    CHECK(inside > 10000);
+    CHECK(outside > 10000);
+}

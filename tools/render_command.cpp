@@ -11,6 +11,7 @@
 #include "tools/picture_file.hpp"
 #include "tools/progress.hpp"
 #include "tools/render_options.hpp"
+#include "tools/scene_renderer.hpp"
 #include "tools/throw_faults.hpp"
 #include "tools/whole_file.hpp"
 
@@ -67,26 +68,6 @@ void place_frame(const stages::World& base, stages::World& world, int frame, flo
     world.camera.right = turned(base.camera.right, camera);
     world.camera.up = turned(base.camera.up, camera);
     world.camera.forward = turned(base.camera.forward, camera);
-}
-
-PictureData picture_of(const stages::Picture& terms, bool layers) {
-    // The layers in the order in which a reader of EXR sorts them.
-    const std::pair<const char*, const Texture*> parts[] = {{"caustic", terms.caustic}, {"direct", terms.direct}, {"emission", terms.emission}};
-    PictureData p{terms.direct->width(), terms.direct->height(), {"R", "G", "B"}, {}};
-    if (layers)
-        for (const auto& [name, texture] : parts)
-            for (const char* c : {".R", ".G", ".B"}) p.channels.push_back(std::string(name) + c);
-    p.values.reserve(static_cast<std::size_t>(p.width) * p.height * p.channels.size());
-    for (int y = 0; y < p.height; ++y) {
-        const float *direct = reinterpret_cast<const float*>(terms.direct->row(y)), *caustic = reinterpret_cast<const float*>(terms.caustic->row(y)),
-                    *emission = reinterpret_cast<const float*>(terms.emission->row(y));
-        for (int x = 0; x < p.width; ++x, direct += 4, caustic += 4, emission += 4) {
-            for (int c = 0; c < 3; ++c) p.values.push_back((direct[c] + caustic[c]) + emission[c]);
-            if (!layers) continue;
-            for (const float* part : {caustic, direct, emission}) p.values.insert(p.values.end(), part, part + 3);
-        }
-    }
-    return p;
 }
 
 // "X,Y", or nothing: -1.

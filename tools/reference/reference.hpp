@@ -1,0 +1,72 @@
+// The truth: an unbiased light tracer over exact geometry, which shares nothing with the methods that it judges but the
+// scene description. design.md's radiometry is its physics; tests/oracle, which shares no code with it, is its judge.
+//
+// What light does until it meets its first diffuse surface or is scattered once is followed; diffuse surfaces do not light
+// each other. The picture's terms are
+//   direct    light straight from lamps and surroundings on receivers
+//   caustic   light on receivers that came by way of specular surfaces
+//   scattered light that a medium scattered once, straight from lamps and surroundings or by way of specular surfaces
+//   emission  of surfaces and of the surroundings
+// each also where it is seen in or through specular surfaces. Results are the same for every number of threads, but may
+// differ between processors in their last bits: this is a truth, not a golden.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "scenes/scene.hpp"
+#include "tools/picture_file.hpp"
+
+namespace nephroid::reference {
+
+struct Options {
+    int width = 512, height = 384;
+    std::uint64_t seed = 1;
+    int max_events = 32;  // reflections and transmissions on one path
+    int threads = 0;      // 0: one per core
+};
+
+// Whichever comes first; 0: not a limit. At least the passes that an estimate of noise needs are made.
+struct Limits {
+    std::uint64_t photons = 0;  // altogether, those of a resumed picture counted
+    double seconds = 0;         // of this run
+    double noise = 0;           // of the whole picture, see Tracer::noise
+};
+
+// The state that a picture is resumed from; what Tracer::state() gave.
+using State = std::string;
+
+class Tracer {
+public:
+    // Throws std::runtime_error, one line: no camera, options out of range, a scene that it cannot do.
+    Tracer(const scenes::Scene& scene, const Options& options);
+    ~Tracer();
+
+    // Called after every pass with what is done so far: the share of the nearest limit, 0 to 1.
+    using Listener = std::function<void(double share)>;
+    void run(const Limits& limits, const Listener& listener = {});
+
+    // R, G, B; mask (1: left out, the outline of something specular that the eye sees first); caustic.R ..., direct.R ...,
+    // emission.R ..., scattered.R ... as render --layers names them.
+    PictureData picture() const;
+    // Standard errors of R, G, B, from the spread of independent passes: channels R.error, G.error, B.error.
+    PictureData error() const;
+
+    // What is left of the noise: the relMSE that `compare` would measure against the truth, estimated from two independent
+    // halves of the passes; over all pixels, and over those whose caustic is more than half of them.
+    double noise() const;
+    double caustic_noise() const;
+    std::uint64_t photons() const;
+    int passes() const;
+
+    State state() const;
+    // Goes on where `state` ended. Throws std::runtime_error if that was of another scene or other options.
+    void resume(const State& state);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace nephroid::reference

@@ -68,13 +68,6 @@ bool has_channels(const PictureData& picture, const std::vector<std::string>& na
     return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return picture.channel(name) >= 0; });
 }
 
-// Left out is what is left out of the picture, and where the caustic is at most half of it.
-PixelMask not_caustic(const PictureData& reference, const PictureData& caustic, PixelMask mask) {
-    for (std::size_t i = 0; i < mask.size(); ++i)
-        mask[i] = mask[i] || !(luminance(&caustic.values[3 * i]) > 0.5f * luminance(&reference.values[3 * i]));
-    return mask;
-}
-
 void add_regions(const CompareOptions& a, const PictureData& test, const PictureData& reference, std::vector<Region>& regions) {
     const Region picture = regions[0];
     PixelMask rest = picture.mask;

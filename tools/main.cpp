@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
                          std::string("nephroid ") + nephroid::version_text + ", bits " + std::to_string(nephroid::bits_version));
     nephroid::add_render_command(app);
     nephroid::add_plan_command(app);
+    nephroid::add_reference_command(app);
     nephroid::add_compare_command(app);
     nephroid::add_bench_command(app);
     const int code = run(app, argc, argv);

@@ -46,6 +46,12 @@ std::vector<float> rgb_of(const PictureData& picture, const PictureData& fill, c
 
 }  // namespace
 
+PixelMask not_caustic(const PictureData& picture, const PictureData& caustic, PixelMask mask) {
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        mask[i] = mask[i] || !(luminance(&caustic.values[3 * i]) > 0.5f * luminance(&picture.values[3 * i]));
+    return mask;
+}
+
 PictureData select_channels(const PictureData& picture, const std::vector<std::string>& names, const std::string& path) {
     std::vector<int> from;
     for (const std::string& name : names) {

@@ -23,6 +23,9 @@ std::optional<std::size_t> first_not_finite(const PictureData& picture, const Pi
 // Throws std::runtime_error naming the file, the pixel and the channel of that.
 void check_finite(const PictureData& picture, const PixelMask& mask, const std::string& path);
 
+// Leaves out what the mask leaves out, and every pixel whose caustic is at most half of its luminance. R, G, B both.
+PixelMask not_caustic(const PictureData& picture, const PictureData& caustic, PixelMask mask);
+
 struct PixelDifference {
     int x = 0, y = 0, channel = 0;
     double test = 0, reference = 0;

@@ -52,7 +52,7 @@ private:
 };
 
 PictureData first_three_channels(const PictureData& p) {
-    PictureData rgb{p.width, p.height, {p.channels.begin(), p.channels.begin() + 3}, {}, p.display_referred};
+    PictureData rgb{p.width, p.height, {p.channels.begin(), p.channels.begin() + 3}, {}, p.display_referred, p.metadata};
     rgb.values.reserve(p.pixel_count() * 3);
     for (std::size_t i = 0; i < p.values.size(); i += p.channels.size())
         rgb.values.insert(rgb.values.end(), &p.values[i], &p.values[i] + 3);
@@ -72,6 +72,7 @@ OIIO::ImageSpec spec_of(const PictureData& picture, bool linear) {
     spec.channelnames = picture.channels;
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    for (const auto& [name, value] : picture.metadata) spec.attribute(name, value);
     return spec;
 }
 
@@ -105,6 +106,18 @@ void check_spec(const std::string& path, const OIIO::ImageSpec& spec) {
 int PictureData::channel(const std::string& name) const {
     const auto found = std::find(channels.begin(), channels.end(), name);
     return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
+void append_channels(PictureData& picture, const PictureData& more) {
+    const std::size_t a = picture.channels.size(), b = more.channels.size();
+    std::vector<float> values;
+    values.reserve(picture.pixel_count() * (a + b));
+    for (std::size_t p = 0; p < picture.pixel_count(); ++p) {
+        values.insert(values.end(), &picture.values[p * a], &picture.values[p * a] + a);
+        values.insert(values.end(), &more.values[p * b], &more.values[p * b] + b);
+    }
+    picture.channels.insert(picture.channels.end(), more.channels.begin(), more.channels.end());
+    picture.values.swap(values);
 }
 
 std::string picture_ending(const std::string& path) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nephroid {
@@ -12,11 +13,15 @@ struct PictureData {
     std::vector<std::string> channels;  // names
     std::vector<float> values;
     bool display_referred = false;  // the file has integers on the sRGB curve: nothing is brighter than 1
+    std::vector<std::pair<std::string, std::string>> metadata = {};  // to be written into the file's header; not read
 
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
     // Of a channel's name; -1: there is none.
     int channel(const std::string& name) const;
 };
+
+// Adds another picture's channels of the same size.
+void append_channels(PictureData& picture, const PictureData& more);
 
 // Writes EXR, TIFF, HDR (linear) or PNG (sRGB, 8 bits, clamped; times 2^exposure) as the name's ending says, under a
 // temporary name first. Returns the SHA-1 of the pixels as the file has them, which is what `oiiotool --hash` prints.

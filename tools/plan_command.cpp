@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/joined.hpp"
 #include "tools/render_options.hpp"
+#include "tools/world_builder.hpp"
 
 namespace nephroid {
 
@@ -13,7 +14,7 @@ namespace {
 
 void run(RenderOptions& options) {
     Device device({.threads = options.threads, .lanes = options.lanes});
-    const scenes::Scene scene = load_for_render(options);
+    const scenes::Scene scene = load_scene(options);
     options.finish(scene);
     say_notes(scene.notes);
     const BuiltWorld built = build_world(device, scene);

@@ -1,6 +1,7 @@
 // Progress on a terminal, for what takes longer than a second.
 #pragma once
 #include <chrono>
+#include <string>
 
 #include "stages/renderer.hpp"
 
@@ -10,8 +11,11 @@ namespace nephroid {
 class Progress final : public stages::ProgressListener {
 public:
     Progress();
-    ~Progress();  // clears the line
+    ~Progress() { clear(); }
     void on_pass(int number, int count, const char* name) override;
+    // A share, 0 to 1, and what is done so far.
+    void show(double share, const std::string& text);
+    void clear();
     // Put before every line: "frame 3 of 30".
     void set_prefix(const char* prefix) { prefix_ = prefix; }
 

@@ -100,7 +100,7 @@ void run(RenderArguments& a) {
     const double load_start = now_ms();
     Device device({.threads = a.options.threads, .lanes = a.options.lanes});
     throw_faults(device.faults());
-    const scenes::Scene scene = load_for_render(a.options);
+    const scenes::Scene scene = load_scene(a.options);
     a.options.finish(scene);
     a.options.settings.leave_out = !a.keep_idle;
     if (debug.x >= a.options.settings.width || debug.y >= a.options.settings.height) throw std::runtime_error("--debug-pixel: lies outside the picture");

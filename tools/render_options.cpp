@@ -9,26 +9,18 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "scenes/load.hpp"
-#include "scenes/medium_json.hpp"
+#include "pipeline/texture.hpp"
 #include "tools/number_range.hpp"
 
 namespace nephroid {
 
 namespace {
 
-// A whole number, all of the text.
-bool parse_number(const std::string& text, long long& value) {
-    if (text.empty() || text.size() > 18 || text.find_first_not_of("0123456789") != std::string::npos) return false;
-    value = std::stoll(text);
-    return true;
-}
-
 // "1024^2" or "1048576": photons; the edge of the smallest square of a power of two that holds as many.
 int parse_photons(const std::string& text) {
     long long count = 0, edge = 0;
     const std::size_t caret = text.find('^');
-    if (caret != std::string::npos ? !(parse_number(text.substr(0, caret), edge) && text.substr(caret) == "^2" && edge <= 65536) : !parse_number(text, count))
+    if (caret != std::string::npos ? !(parse_whole_number(text.substr(0, caret), edge) && text.substr(caret) == "^2" && edge <= 65536) : !parse_whole_number(text, count))
         throw std::runtime_error("--photons: '" + text + "' is neither a number nor a number^2");
     if (caret != std::string::npos) count = edge * edge;
     constexpr long long least = 16, most = 4096;
@@ -36,15 +28,6 @@ int parse_photons(const std::string& text) {
     int side = 16;
     while (static_cast<long long>(side) * side < count) side *= 2;
     return side;
-}
-
-void parse_size(const std::string& text, int& width, int& height) {
-    const std::size_t x = text.find('x');
-    long long w = 0, h = 0;
-    if (x == std::string::npos || !parse_number(text.substr(0, x), w) || !parse_number(text.substr(x + 1), h)) throw std::runtime_error("--size: '" + text + "' is not WIDTHxHEIGHT");
-    if (w < 1 || h < 1 || w > max_texture_size || h > max_texture_size) throw std::runtime_error("--size: width and height must be between 1 and 16384, got " + text);
-    width = static_cast<int>(w);
-    height = static_cast<int>(h);
 }
 
 // A system that runs out of memory ends the program, or another one, without a word.
@@ -64,11 +47,7 @@ void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
 }  // namespace
 
 void RenderOptions::add_to(CLI::App& c) {
-    c.add_option("scene", scene, "A glTF or GLB file, or a bundled scene: " + [] {
-        std::string names;
-        for (const std::string_view name : scenes::bundled_scene_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-        return names;
-    }() + " (default: the first)");
+    SceneOptions::add_to(c);
     c.add_option("--technique", technique, "How caustics are made: auto or mapping")->check(CLI::IsMember({"auto", "mapping"}))->capture_default_str();
     c.add_option("--variant", variant, "mapping: two-sided refraction; the tutorial's single one; photons from the object's vertices")
         ->check(CLI::IsMember({"two-sided", "tutorial", "vertices"}))->capture_default_str();
@@ -81,10 +60,7 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--bounces", settings.bounces, "Surfaces that light meets in an object, at most")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_flag("--inner-reflections,!--no-inner-reflections", settings.inner_reflections, "Follow what surfaces reflect in part inside objects (default), or leave it out");
     c.add_option("--depth-layers", settings.solid_layers, "Times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
-    c.add_option("--size", size, "Of the picture, WIDTHxHEIGHT (default: 768 high, as wide as the camera's aspect)");
     c.add_option("--samples", samples, "Per pixel, rounded up to a square; a pixel is their mean")->check(CLI::Range(1, 256))->capture_default_str();
-    c.add_option("--environment", environment, "A lat-long picture of the surroundings, EXR or HDR")->type_name("FILE");
-    c.add_option("--medium", medium, "A JSON file with a medium, instead of the scene's")->type_name("FILE");
     c.add_option("--threads", threads, "0: one per core")->check(CLI::Range(0, 1024))->capture_default_str();
     c.add_option("--lanes", lanes, "1, 4, 8 or 16; 0: the widest there is")->check(CLI::IsMember({0, 1, 4, 8, 16}))->capture_default_str();
 }
@@ -94,32 +70,10 @@ void RenderOptions::finish(const scenes::Scene& loaded) {
     settings.variant = variant == "tutorial" ? stages::mapping::Variant::Tutorial : variant == "vertices" ? stages::mapping::Variant::Vertices : stages::mapping::Variant::TwoSided;
     settings.intersection = intersection == "newton" ? stages::Intersection::Newton : intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
     while (settings.samples_side * settings.samples_side < samples) ++settings.samples_side;
-    if (!size.empty()) {
-        parse_size(size, settings.width, settings.height);
-    } else {
-        settings.height = 768;
-        const float aspect = loaded.cameras.empty() || loaded.cameras.front().aspect <= 0 ? 4.0f / 3.0f : loaded.cameras.front().aspect;
-        settings.width = std::clamp(static_cast<int>(std::lround(768.0 * aspect)), 1, max_texture_size);
-    }
+    picture_size(loaded, settings.width, settings.height);
     if (settings.width * settings.samples_side > max_texture_size || settings.height * settings.samples_side > max_texture_size)
         throw std::runtime_error("--samples: size times samples along an edge must not exceed " + std::to_string(max_texture_size));
     check_memory(loaded, settings);
-}
-
-scenes::Scene load_for_render(const RenderOptions& o) {
-    scenes::Scene scene = o.scene.empty() ? scenes::bundled_scene(scenes::bundled_scene_names().front()) : scenes::load_scene(o.scene);
-    if (!o.environment.empty()) scene.environment = scenes::load_environment(o.environment);
-    if (!o.medium.empty()) scenes::set_media(scene, o.medium);
-    return scene;
-}
-
-void say_notes(const std::vector<std::string>& notes) {
-    std::vector<std::string> said;
-    for (const std::string& n : notes) {
-        if (std::find(said.begin(), said.end(), n) != said.end()) continue;
-        std::fprintf(stderr, "nephroid: %s\n", n.c_str());
-        said.push_back(n);
-    }
 }
 
 }  // namespace nephroid

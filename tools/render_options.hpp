@@ -3,15 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "scenes/scene.hpp"
 #include "stages/settings.hpp"
-#include "tools/world_builder.hpp"
+#include "tools/scene_options.hpp"
 
 namespace nephroid {
 
-struct RenderOptions {
-    std::string scene;  // empty: the first bundled one
-    std::string environment, medium;
+struct RenderOptions : SceneOptions {
     std::string technique = "mapping", variant = "two-sided", tracing = "image-space", intersection = "bisection";
     std::string size;       // "WxH"; empty: 768 high, as wide as the camera's aspect says
     std::string photons = "1024^2";
@@ -23,11 +20,5 @@ struct RenderOptions {
     // Checks the texts and fills the settings; the scene decides a size that was not given. Throws std::runtime_error.
     void finish(const scenes::Scene& scene);
 };
-
-// Loads the scene with the environment and medium that were asked for. Throws.
-scenes::Scene load_for_render(const RenderOptions& options);
-
-// Writes what a scene or world had to make up or leave out to standard error, each once.
-void say_notes(const std::vector<std::string>& notes);
 
 }  // namespace nephroid

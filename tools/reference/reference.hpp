@@ -7,13 +7,18 @@
 //   caustic   light on receivers that came by way of specular surfaces
 //   scattered light that a medium scattered once, straight from lamps and surroundings or by way of specular surfaces
 //   emission  of surfaces and of the surroundings
-// each also where it is seen in or through specular surfaces. Results are the same for every number of threads, but may
-// differ between processors in their last bits: this is a truth, not a golden.
+// each also where it is seen in or through specular surfaces; but light that came by way of specular surfaces and is then
+// scattered is seen only where nothing specular is between it and the eye, and notes() says so. Results are the same for
+// every number of threads, but may differ between processors in their last bits: this is a truth, not a golden.
+//
+// Receivers that are seen behind specular surfaces gather photons from an area of 3/4 of a pixel's width on them
+// (VisiblePoints::blur): their caustics are blurred by that, and nothing else is.
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "scenes/scene.hpp"
 #include "tools/picture_file.hpp"
@@ -42,6 +47,9 @@ public:
     // Throws std::runtime_error, one line: no camera, options out of range, a scene that it cannot do.
     Tracer(const scenes::Scene& scene, const Options& options);
     ~Tracer();
+
+    // What the scene has that is not in the picture, a sentence each.
+    const std::vector<std::string>& notes() const;
 
     // Called after every pass with what is done so far: the share of the nearest limit, 0 to 1.
     using Listener = std::function<void(double share)>;

@@ -9,7 +9,7 @@ namespace nephroid::reference {
 
 namespace {
 
-constexpr std::size_t enough_cells = 4096;
+constexpr std::size_t enough_cells = 512;
 constexpr int finest = 1 << 15;  // cells along an edge
 constexpr double margin = 1e-6;  // of a view's width, for what rounding does
 

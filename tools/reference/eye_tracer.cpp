@@ -34,10 +34,11 @@ struct EyeTracer::Path {
     Companion right, down;
 };
 
-void EyeTracer::sample(std::uint32_t pixel, Random& random, Film& film, VisiblePoints* points) const {
+void EyeTracer::sample(std::uint32_t pixel, double weight, Random& random, Film& film, VisiblePoints* points) const {
     const double x = pixel % static_cast<std::uint32_t>(camera_.width()) + random.next(), y = pixel / static_cast<std::uint32_t>(camera_.width()) + random.next();
     Path path;
     path.from = {camera_.eye()};
+    path.weight = Rgb(weight);
     path.direction = camera_.direction(x, y);
     path.region = eye_region_;
     path.right = {camera_.eye(), camera_.direction(x + companion_step, y)};

@@ -20,8 +20,8 @@ public:
     EyeTracer(const World& world, const Camera& camera, const std::vector<Lamp>& lamps, const Surroundings& surroundings, Region eye_region, int max_events)
         : world_(world), camera_(camera), lamps_(lamps), surroundings_(surroundings), eye_region_(eye_region), max_events_(max_events) {}
 
-    // One sample of a pixel. The points are gathered into if photons are there to be gathered.
-    void sample(std::uint32_t pixel, Random& random, Film& film, VisiblePoints* points) const;
+    // One sample of a pixel, which counts `weight`. The points are gathered into if photons are there to be gathered.
+    void sample(std::uint32_t pixel, double weight, Random& random, Film& film, VisiblePoints* points) const;
 
     // For each pixel 1 if the eye sees something specular first in a part of it and something else in another: its outline.
     std::vector<std::uint8_t> outlines() const;

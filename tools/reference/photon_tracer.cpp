@@ -9,7 +9,7 @@ namespace nephroid::reference {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double faint = 0.02;  // branches with less of a photon than that are followed by chance
+constexpr double faint = 0.1;  // branches with less of a photon than that are followed by chance
 constexpr int all_channels = -1;
 
 }  // namespace

@@ -24,8 +24,13 @@ namespace nephroid::reference {
 
 namespace {
 
-constexpr std::uint32_t photons_per_pass = 1u << 16;
-constexpr int passes_per_round = 8;  // after which the emission learns; one pass is one thread's work
+constexpr std::uint32_t photons_per_pass = 1u << 19;
+// Of a pixel, in a pass: where all round it looks the same, and where there is an edge.
+constexpr int plain_samples = 1, edge_samples = 8;
+// Before the picture is begun, and not in it: what the pixels hold, then what photons from each cell do to its noise.
+constexpr int pilot_rounds = 2;
+constexpr std::uint64_t pilot_passes = 2;
+constexpr std::uint32_t pilot_photons = 1u << 17;
 constexpr double most_masked = 0.05;
 
 const scenes::Camera& camera_of(const scenes::Scene& scene, const Options& options) {
@@ -45,10 +50,10 @@ double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_
 
 // What one thread works with.
 struct Desk {
-    explicit Desk(std::size_t pixels, std::size_t cells) : film(pixels), lesson{std::vector<double>(cells), std::vector<double>(cells)} {}
+    explicit Desk(std::size_t pixels) : film(pixels) {}
     Film film;
     VisiblePoints points;
-    Emission::Lesson lesson;
+    Emission::Lesson lesson;  // while piloting
     Account account;
 };
 
@@ -68,8 +73,7 @@ struct Tracer::Impl {
           photons(world, camera, eye_region, o.max_events),
           mask(eyes.outlines()),
           halves{Film(mask.size()), Film(mask.size())},
-          squares(mask.size(), Rgb(0.0)),
-          lesson{std::vector<double>(emission.cell_count()), std::vector<double>(emission.cell_count())} {
+          squares(mask.size(), Rgb(0.0)) {
         const auto masked = static_cast<double>(std::count(mask.begin(), mask.end(), 1));
         if (masked > most_masked * static_cast<double>(mask.size()))
             throw std::runtime_error("outlines of specular objects are in " + std::to_string(std::lround(100 * masked / static_cast<double>(mask.size()))) +
@@ -79,9 +83,12 @@ struct Tracer::Impl {
         for (std::size_t l = 0; l < lamps.size(); ++l) lamp_regions.push_back(lamps[l].type == scenes::LightType::Directional ? outside_region : world.region_of(lamps[l].position));
     }
 
-    void trace_pass(std::uint64_t pass, Desk& desk) const;
+    int threads() const { return options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+    void trace_pass(std::uint64_t seed, std::uint32_t photon_count, Desk& desk) const;
     void fold(const Desk& desk);
-    void learn();
+    void pilot(std::vector<Desk>& desks);
+    void set_importance(const Film& picture);
+    void find_edges(const Film& picture);
     Film mean(int half) const;  // 0, 1; or 2: of both
     double noise_of(bool caustic_only) const;
 
@@ -103,28 +110,30 @@ struct Tracer::Impl {
     std::uint64_t passes = 0;
     std::array<Film, 2> halves;   // sums over even and odd passes
     std::vector<Rgb> squares;     // of each pass's whole picture
-    Emission::Lesson lesson;      // of the round so far
-    std::vector<float> importance;
+    bool is_piloted = false;
+    std::vector<float> importance;  // while piloting
+    std::vector<std::uint8_t> edges;
     Account account;
 };
 
-void Tracer::Impl::trace_pass(std::uint64_t pass, Desk& desk) const {
-    const std::uint64_t seed = mixed(options.seed, pass);
+void Tracer::Impl::trace_pass(std::uint64_t seed, std::uint32_t photon_count, Desk& desk) const {
     desk.film.clear();
     desk.points.clear();
     desk.account = {};
-    std::fill(desk.lesson.squares.begin(), desk.lesson.squares.end(), 0.0);
-    std::fill(desk.lesson.photons.begin(), desk.lesson.photons.end(), 0.0);
     for (std::uint32_t p = 0; p < mask.size(); ++p) {
         Random random(mixed(seed, 1), p);
-        eyes.sample(p, random, desk.film, emission.is_empty() ? nullptr : &desk.points);
+        const int samples = edges.empty() || !edges[p] ? plain_samples : edge_samples;
+        for (int k = 0; k < samples; ++k) eyes.sample(p, 1.0 / samples, random, desk.film, emission.is_empty() ? nullptr : &desk.points);
     }
     if (emission.is_empty()) return;
     desk.points.build(glm::length(world.geometry().high() - world.geometry().low()));
-    emission.for_each(mixed(seed, 2), photons_per_pass, [&](const Start& start, std::size_t cell, std::uint32_t number) {
+    emission.for_each(mixed(seed, 2), photon_count, [&](const Start& start, std::size_t cell, std::uint32_t number) {
         Random random(mixed(seed, 3), number);
-        desk.lesson.squares[cell] += photons.trace(start, start.lamp < 0 ? outside_region : lamp_regions[static_cast<std::size_t>(start.lamp)], random, desk.points, importance, desk.film, desk.account);
-        desk.lesson.photons[cell] += importance.empty() ? 0 : 1;
+        const Region region = start.lamp < 0 ? outside_region : lamp_regions[static_cast<std::size_t>(start.lamp)];
+        const double squares_of_photon = photons.trace(start, region, random, desk.points, importance, desk.film, desk.account);
+        if (importance.empty()) return;
+        desk.lesson.squares[cell] += squares_of_photon;
+        desk.lesson.photons[cell] += 1;
     });
 }
 
@@ -134,21 +143,100 @@ void Tracer::Impl::fold(const Desk& desk) {
         const Rgb sum = desk.film.sum(p);
         squares[p] += sum * sum;
     }
-    for (std::size_t k = 0; k < lesson.photons.size(); ++k) {
-        lesson.squares[k] += desk.lesson.squares[k];
-        lesson.photons[k] += desk.lesson.photons[k];
-    }
     account += desk.account;
     ++passes;
 }
 
-// Where relMSE is measured a contribution counts relative to what is there.
-void Tracer::Impl::learn() {
-    if (emission.is_empty()) return;
-    emission.learn(lesson);
-    std::fill(lesson.squares.begin(), lesson.squares.end(), 0.0);
-    std::fill(lesson.photons.begin(), lesson.photons.end(), 0.0);
-    const Film picture = mean(2);
+namespace {
+
+// Traces passes [first, last), each by one thread, and folds them in their order until `fold` says that it is over.
+void run_passes(std::uint64_t first, std::uint64_t last, std::vector<Desk>& desks, const std::function<void(std::uint64_t, Desk&)>& trace, const std::function<bool(Desk&)>& fold) {
+    std::atomic<std::uint64_t> next = first;
+    std::uint64_t folded = first;
+    bool over = false;
+    std::mutex mutex;
+    std::condition_variable turn;
+    std::exception_ptr error;
+    const auto work = [&](Desk& desk) {
+        for (std::uint64_t pass = next++; pass < last; pass = next++) {
+            std::exception_ptr mine;
+            try {
+                trace(pass, desk);
+            } catch (...) {
+                mine = std::current_exception();
+            }
+            std::unique_lock lock(mutex);
+            turn.wait(lock, [&] { return folded == pass || over; });
+            if (over) return;
+            try {
+                if (mine) std::rethrow_exception(mine);
+                over = fold(desk);
+            } catch (...) {
+                error = std::current_exception();
+                over = true;
+            }
+            ++folded;
+            turn.notify_all();
+            if (over) return;
+        }
+    };
+    std::vector<std::thread> others;
+    for (std::size_t k = 1; k < desks.size(); ++k) others.emplace_back(work, std::ref(desks[k]));
+    work(desks[0]);
+    for (std::thread& t : others) t.join();
+    if (error) std::rethrow_exception(error);
+}
+
+}  // namespace
+
+void Tracer::Impl::pilot(std::vector<Desk>& desks) {
+    if (is_piloted) return;
+    is_piloted = true;
+    for (int round = 0; round < pilot_rounds; ++round) {
+        Film picture(mask.size());
+        Emission::Lesson lesson{std::vector<double>(emission.cell_count()), std::vector<double>(emission.cell_count())};
+        run_passes(
+            0, pilot_passes, desks,
+            [&](std::uint64_t pass, Desk& desk) {
+                desk.lesson = {std::vector<double>(emission.cell_count()), std::vector<double>(emission.cell_count())};
+                trace_pass(mixed(mixed(~options.seed, pass), static_cast<std::uint64_t>(round)), pilot_photons, desk);
+            },
+            [&](Desk& desk) {
+                picture += desk.film;
+                for (std::size_t k = 0; k < lesson.photons.size(); ++k) {
+                    lesson.squares[k] += desk.lesson.squares[k];
+                    lesson.photons[k] += desk.lesson.photons[k];
+                }
+                return false;
+            });
+        for (std::size_t t = 0; t < term_count; ++t)
+            for (Rgb& v : picture.term(t)) v /= static_cast<double>(pilot_passes);
+        if (!importance.empty() && !emission.is_empty()) emission.learn(lesson);
+        if (round + 1 < pilot_rounds) set_importance(picture);
+        else find_edges(picture);
+    }
+    importance.clear();
+}
+
+// Where what is seen without photons changes by more than a little from one pixel to the next.
+void Tracer::Impl::find_edges(const Film& picture) {
+    constexpr double little = 0.15;
+    const auto seen = [&](int x, int y) {
+        const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
+        return luminance(picture.term(static_cast<std::size_t>(Term::Direct))[p] + picture.term(static_cast<std::size_t>(Term::Emission))[p]);
+    };
+    edges.assign(mask.size(), 0);
+    for (int y = 0; y < options.height; ++y)
+        for (int x = 0; x < options.width; ++x) {
+            double low = std::numeric_limits<double>::infinity(), high = 0;
+            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, options.height - 1); ++v)
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, options.width - 1); ++u) low = std::min(low, seen(u, v)), high = std::max(high, seen(u, v));
+            edges[static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x)] = high - low > little * high;
+        }
+}
+
+// A contribution counts as relMSE counts it: relative to what is there.
+void Tracer::Impl::set_importance(const Film& picture) {
     double sum = 0;
     for (std::size_t p = 0; p < mask.size(); ++p) sum += luminance(picture.sum(p));
     const double epsilon = 0.1 * sum / static_cast<double>(mask.size());
@@ -200,56 +288,20 @@ Tracer::~Tracer() = default;
 void Tracer::run(const Limits& limits, const Listener& listener) {
     Impl& m = *impl_;
     const double start = seconds_now();
-    const int threads = m.options.threads > 0 ? m.options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    std::vector<Desk> desks(static_cast<std::size_t>(std::min(threads, passes_per_round)), Desk(m.mask.size(), m.emission.cell_count()));
-    const std::uint64_t least = 4;  // two for each half
-    const auto share = [&] {
-        double s = 0;
-        if (limits.photons > 0) s = std::max(s, static_cast<double>(photons()) / static_cast<double>(limits.photons));
-        if (limits.seconds > 0) s = std::max(s, (seconds_now() - start) / limits.seconds);
-        return m.passes < least ? std::min(s, static_cast<double>(m.passes) / least) : s;
+    std::vector<Desk> desks(static_cast<std::size_t>(m.threads()), Desk(m.mask.size()));
+    m.pilot(desks);
+    constexpr std::uint64_t least = 4;  // two for each half
+    const std::uint64_t most = limits.photons > 0 ? std::max<std::uint64_t>((limits.photons + photons_per_pass - 1) / photons_per_pass, least) : std::numeric_limits<std::uint64_t>::max();
+    const auto fold = [&](Desk& desk) {
+        m.fold(desk);
+        double share = static_cast<double>(m.passes) / static_cast<double>(most);
+        if (limits.seconds > 0) share = std::max(share, (seconds_now() - start) / limits.seconds);
+        // The halves are equal after every second pass; noise falls like 1 / passes.
+        if (limits.noise > 0 && m.passes >= least && m.passes % 2 == 0) share = std::max(share, limits.noise / std::max(noise(), 1e-300));
+        if (listener) listener(std::min(share, 1.0));
+        return share >= 1 && m.passes >= least;
     };
-    for (;;) {
-        const std::uint64_t first = m.passes;
-        std::uint64_t last = (first / passes_per_round + 1) * passes_per_round;
-        if (limits.photons > 0) last = std::min(last, std::max<std::uint64_t>((limits.photons + photons_per_pass - 1) / photons_per_pass, least));
-        if (last <= first) return;
-        std::atomic<std::uint64_t> next = first;
-        std::atomic<bool> over = false;
-        std::mutex mutex;
-        std::condition_variable folded;
-        std::exception_ptr error;
-        const auto work = [&](Desk& desk) {
-            // Whoever takes a pass finishes it: those before it are with others, or done.
-            for (;;) {
-                if (over) return;
-                const std::uint64_t pass = next++;
-                if (pass >= last) return;
-                m.trace_pass(pass, desk);
-                std::unique_lock lock(mutex);
-                folded.wait(lock, [&] { return m.passes == pass; });
-                try {
-                    m.fold(desk);
-                    const double done = share();
-                    if (done >= 1) over = true;
-                    if (listener) listener(std::min(done, 1.0));
-                } catch (...) {
-                    error = std::current_exception();
-                    over = true;
-                    ++m.passes;
-                }
-                folded.notify_all();
-            }
-        };
-        std::vector<std::thread> others;
-        for (std::size_t k = 1; k < desks.size(); ++k) others.emplace_back(work, std::ref(desks[k]));
-        work(desks[0]);
-        for (std::thread& t : others) t.join();
-        if (error) std::rethrow_exception(error);
-        if (m.passes % passes_per_round == 0) m.learn();
-        if (share() >= 1 || (limits.photons > 0 && m.passes >= last && last % passes_per_round != 0)) return;
-        if (limits.noise > 0 && noise() <= limits.noise) return;
-    }
+    run_passes(m.passes, most, desks, [&](std::uint64_t pass, Desk& desk) { m.trace_pass(mixed(m.options.seed, pass), photons_per_pass, desk); }, fold);
 }
 
 PictureData Tracer::picture() const {
@@ -317,14 +369,12 @@ private:
 State Tracer::state() const {
     const Impl& m = *impl_;
     State s = state_begins;
-    const std::uint64_t header[] = {m.digest, m.options.seed, static_cast<std::uint64_t>(m.options.width), static_cast<std::uint64_t>(m.options.height), static_cast<std::uint64_t>(m.options.max_events), m.passes, m.importance.size()};
+    const std::uint64_t header[] = {m.digest, m.options.seed, static_cast<std::uint64_t>(m.options.width), static_cast<std::uint64_t>(m.options.height), static_cast<std::uint64_t>(m.options.max_events), m.passes};
     put(s, header, sizeof header);
     for (const Film& f : m.halves)
         for (std::size_t t = 0; t < term_count; ++t) put(s, f.term(t));
     put(s, m.squares);
-    put(s, m.importance);
-    put(s, m.lesson.squares);
-    put(s, m.lesson.photons);
+    put(s, m.edges);
     put(s, m.emission.learned());
     put(s, &m.account, sizeof m.account);
     return s;
@@ -335,26 +385,25 @@ void Tracer::resume(const State& state) {
     if (!state.starts_with(state_begins)) throw std::runtime_error("is not a picture to go on with");
     const std::string bytes = state.substr(sizeof state_begins - 1);
     Reader r(bytes);
-    std::uint64_t header[7];
+    std::uint64_t header[6];
     r.get(header, sizeof header);
     if (header[0] != m.digest || header[1] != m.options.seed || header[2] != static_cast<std::uint64_t>(m.options.width) || header[3] != static_cast<std::uint64_t>(m.options.height) ||
-        header[4] != static_cast<std::uint64_t>(m.options.max_events) || (header[6] != 0 && header[6] != m.mask.size()))
+        header[4] != static_cast<std::uint64_t>(m.options.max_events))
         throw std::runtime_error("is of another scene, size, seed or number of bounces");
     std::array<Film, 2> halves{Film(m.mask.size()), Film(m.mask.size())};
     for (Film& f : halves)
         for (std::size_t t = 0; t < term_count; ++t) r.get(f.term(t));
     std::vector<Rgb> squares(m.mask.size());
-    std::vector<float> importance(header[6]);
-    Emission::Lesson lesson = m.lesson;
+    std::vector<std::uint8_t> edges(m.mask.size());
     std::vector<double> learned(2 * m.emission.cell_count());
     Account account;
-    r.get(squares), r.get(importance), r.get(lesson.squares), r.get(lesson.photons), r.get(learned), r.get(&account, sizeof account);
+    r.get(squares), r.get(edges), r.get(learned), r.get(&account, sizeof account);
     if (!r.at_end()) throw std::runtime_error("goes on where a picture to go on with would end");
     m.passes = header[5];
     m.halves = std::move(halves);
     m.squares = std::move(squares);
-    m.importance = std::move(importance);
-    m.lesson = std::move(lesson);
+    m.is_piloted = true;
+    m.edges = std::move(edges);
     m.emission.set_learned(learned);
     m.account = account;
 }

@@ -14,7 +14,7 @@ void VisiblePoints::clear() {
 }
 
 VisiblePoints::Cell VisiblePoints::cell_of(const Vec& p, int level) {
-    const Vec q = glm::floor(p * std::ldexp(1.0, -level));
+    const Vec q = glm::floor(p * std::bit_cast<double>(static_cast<std::uint64_t>(1023 - level) << 52));  // 2^-level
     return {static_cast<std::int32_t>(q.x), static_cast<std::int32_t>(q.y), static_cast<std::int32_t>(q.z), level};
 }
 
@@ -36,7 +36,10 @@ void VisiblePoints::build(double extent) {
         prepared_.push_back({v.position, v.normal, glm::cross(v.down, area) / squared, glm::cross(area, v.across) / squared, reach, v.weight / (blur * blur * std::sqrt(squared)), v.pixel});
         // Every cell of its size that the footprint's ball may reach: at most two along each axis.
         const int level = std::max(finest, std::ilogb(2 * reach) + 1);
-        if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) levels_.push_back(level);
+        auto in_use = std::find_if(levels_.begin(), levels_.end(), [level](const Level& l) { return l.level == level; });
+        if (in_use == levels_.end()) in_use = levels_.insert(levels_.end(), {level, v.position, v.position});
+        in_use->low = glm::min(in_use->low, v.position - reach);
+        in_use->high = glm::max(in_use->high, v.position + reach);
         const Cell low = cell_of(v.position - reach, level), high = cell_of(v.position + reach, level);
         for (std::int32_t z = low.z; z <= high.z; ++z)
             for (std::int32_t y = low.y; y <= high.y; ++y)

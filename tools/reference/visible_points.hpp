@@ -2,6 +2,7 @@
 // pinhole; it is gathered by the places whose footprint it falls into.
 #pragma once
 #include <cstdint>
+#include <glm/vector_relational.hpp>
 #include <vector>
 
 #include "tools/reference/vector.hpp"
@@ -32,8 +33,9 @@ public:
     // weight to be multiplied by the photon's flux.
     template <class Visit>
     void for_each(const Vec& position, const Vec& normal, const Visit& visit) const {
-        for (const int level : levels_) {
-            const Cell cell = cell_of(position, level);
+        for (const Level& level : levels_) {
+            if (glm::any(glm::lessThan(position, level.low)) || glm::any(glm::greaterThan(position, level.high))) continue;
+            const Cell cell = cell_of(position, level.level);
             const std::uint32_t bucket = bucket_of(cell);
             for (std::uint32_t k = starts_[bucket]; k < starts_[bucket + 1]; ++k) {
                 if (!(entries_[k].cell == cell)) continue;
@@ -50,6 +52,10 @@ private:
     struct Cell {
         std::int32_t x, y, z, level;
         bool operator==(const Cell&) const = default;
+    };
+    struct Level {
+        int level;      // a cell's edge is 2^level m
+        Vec low, high;  // of all footprints
     };
     struct Entry {
         Cell cell;
@@ -68,7 +74,7 @@ private:
     std::vector<Prepared> prepared_;
     std::vector<Entry> entries_;
     std::vector<std::uint32_t> starts_;  // of each bucket's entries, and the last one's end; buckets are a power of two
-    std::vector<int> levels_;            // in use: a cell's edge is 2^level m
+    std::vector<Level> levels_;          // in use
 };
 
 }  // namespace nephroid::reference

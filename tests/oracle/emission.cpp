@@ -40,7 +40,13 @@ Emission::Emission(const World& world, const std::vector<scenes::Light>& lights,
     : lights_(lights), middle_(0.5 * (world.low() + world.high())), diagonal_(length(world.high() - world.low())) {
     std::vector<Cell> roots;
     if (aim == Aim::Everything) {
-        add_lights(world, camera.visible_part(world.low(), world.high()), roots);
+        // The box goes as far as the eye, so that all that lies between it and what it sees is in the box.
+        Vec3 low = world.low(), high = world.high();
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], camera.eye()[k]);
+            high[k] = std::max(high[k], camera.eye()[k]);
+        }
+        add_lights(world, camera.visible_part(low, high), roots);
         subdivide(nullptr, std::move(roots));
     } else {
         std::vector<Triangle> targets;
@@ -64,15 +70,14 @@ Emission::Emission(const World& world, const std::vector<scenes::Light>& lights,
 void Emission::add_lights(const World& world, const std::vector<Vec3>& targets, std::vector<Cell>& roots) {
     for (std::size_t l = 0; l < lights_.size(); ++l) {
         const scenes::Light& light = lights_[l];
+        insides_.push_back(light.type == scenes::LightType::Directional ? none : world.mesh_around(to_vec3(light.position)));
         if (!has_power(light)) continue;
         if (light.type != scenes::LightType::Directional) {
             const Vec3 origin = to_vec3(light.position);
-            const std::uint32_t inside = world.mesh_around(origin);
             for (int face = 0; face < 6; ++face) {
                 View view;
                 view.origin = origin;
                 view.light = l;
-                view.inside = inside;
                 view.axis[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
                 view.s[(face / 2 + 1) % 3] = 1.0;
                 view.t[(face / 2 + 2) % 3] = 1.0;
@@ -207,11 +212,34 @@ Start Emission::start(const Cell& cell, double unit_u, double unit_v, std::uint6
     const double u = cell.u0 + unit_u * (cell.u1 - cell.u0), v = cell.v0 + unit_v * (cell.v1 - cell.v0);
     // The cell's area is sampled with density share * count photons; each stands for its part of it.
     const double area = (cell.u1 - cell.u0) * (cell.v1 - cell.v0) / (cell.share * static_cast<double>(count));
-    if (view.is_parallel) return {{view.origin + u * view.s + v * view.t, view.axis}, area * to_vec3(light.intensity), std::numeric_limits<double>::infinity(), none};
+    if (view.is_parallel) {
+        const Vec3 origin = view.origin + u * view.s + v * view.t;
+        return {{origin, view.axis}, area * to_vec3(light.intensity), std::numeric_limits<double>::infinity(), none};
+    }
     const Vec3 direction = normalize(view.axis + u * view.s + v * view.t);
     const double falloff = light.type == scenes::LightType::Spot ? spot_falloff(light, dot(direction, normalize(to_vec3(light.direction)))) : 1.0;
     const double solid_angle = area / std::pow(1.0 + u * u + v * v, 1.5);  // of a patch of the unit cube's face
-    return {{view.origin, direction}, solid_angle * falloff * to_vec3(light.intensity), light.range, view.inside};
+    return {{view.origin, direction}, solid_angle * falloff * to_vec3(light.intensity), light.range, insides_[view.light]};
+}
+
+std::vector<Emission::Incident> Emission::incident(const Vec3& point) const {
+    std::vector<Incident> incident;
+    for (std::size_t l = 0; l < insides_.size(); ++l) {
+        const scenes::Light& light = lights_[l];
+        if (light.type == scenes::LightType::Directional) {
+            const Vec3 axis = normalize(to_vec3(light.direction));
+            const double distance = dot(point - middle_, axis) + diagonal_;
+            if (distance > 0.0) incident.push_back({axis, to_vec3(light.intensity), distance, none});
+            continue;
+        }
+        const Vec3 way = point - to_vec3(light.position);
+        const double distance = length(way);
+        const Vec3 direction = way / distance;
+        const double falloff = light.type == scenes::LightType::Spot ? spot_falloff(light, dot(direction, normalize(to_vec3(light.direction)))) : 1.0;
+        const double factor = falloff * range_window(distance, light.range) / (distance * distance);
+        incident.push_back({direction, factor * to_vec3(light.intensity), distance, insides_[l]});
+    }
+    return incident;
 }
 
 // Of `count` photons in all, one through a disc across the sphere.

@@ -50,6 +50,15 @@ public:
     template <class Visit>
     void for_each(std::uint64_t seed, std::uint64_t batch, std::uint64_t count, const Visit& visit) const;
 
+    // What comes straight from each light to a point where nothing is in the way.
+    struct Incident {
+        Vec3 direction;     // of travel, unit
+        Rgb irradiance;     // W/m^2 across the direction
+        double distance;    // m, from where the light starts
+        std::uint32_t inside;
+    };
+    std::vector<Incident> incident(const Vec3& point) const;
+
     bool is_empty() const { return cells_.empty() && surroundings_share_ == 0.0; }
 
 private:
@@ -59,7 +68,6 @@ private:
         Vec3 origin, axis, s, t;
         bool is_parallel = false;
         std::size_t light = 0;
-        std::uint32_t inside = none;
     };
     struct Cell {
         std::size_t view;
@@ -78,6 +86,7 @@ private:
     void subdivide(const std::vector<Triangle>* targets, std::vector<Cell> roots);
 
     std::vector<scenes::Light> lights_;
+    std::vector<std::uint32_t> insides_;  // of each light
     std::vector<View> views_;
     std::vector<Cell> cells_;
 

@@ -26,7 +26,9 @@ Medium::Medium(const scenes::Medium& medium)
     for (std::size_t k = 0; k < 3; ++k) size_[k] = static_cast<std::size_t>(medium.size[k]);
     low = to_vec3(medium.low);
     high = to_vec3(medium.high);
-    if (medium.density.empty() || medium.density.size() != size_[0] * size_[1] * size_[2]) throw std::invalid_argument("a grid has not as many densities as cells");
+    if (medium.density.empty() || medium.density.size() != size_[0] * size_[1] * size_[2]) {
+        throw std::invalid_argument("a grid has not as many densities as cells");
+    }
     if (!(low.x < high.x && low.y < high.y && low.z < high.z)) throw std::invalid_argument("a grid's box has no inside");
     densities_.assign(medium.density.begin(), medium.density.end());
     max_density = *std::max_element(densities_.begin(), densities_.end());
@@ -88,6 +90,12 @@ Rgb Region::transmittance(const Ray& ray, double distance, Random& random) const
         }
     }
     return left;
+}
+
+Rgb Region::scattered(const Vec3& point, double cosine) const {
+    Rgb all;
+    for (const Medium& medium : media_) all += medium.sigma_s * (phase(cosine, medium.g) * (medium.is_grid ? medium.density(point) : 1.0));
+    return all;
 }
 
 // Each medium's collisions are a Poisson process of its own, and the first of all of them is the first.

@@ -63,6 +63,9 @@ public:
     };
     std::optional<Collision> collide(const Ray& ray, double far, int channel, Random& random) const;
 
+    // What is scattered at a point of light at right angles to its way, 1/(sr m): of W/m^2, into a direction at that cosine.
+    Rgb scattered(const Vec3& point, double cosine) const;
+
     // Whether anything scatters.
     bool scatters() const { return scatters_; }
 

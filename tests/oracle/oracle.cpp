@@ -9,6 +9,7 @@
 
 #include "camera.hpp"
 #include "emission.hpp"
+#include "near_eye.hpp"
 #include "parallel.hpp"
 #include "photon.hpp"
 #include "surroundings.hpp"
@@ -22,6 +23,7 @@ void check(const scenes::Scene& scene, const Options& options) {
     if (options.width < 1 || options.height < 1) throw std::invalid_argument("the picture has no pixels");
     if (options.batches < 2) throw std::invalid_argument("errors need two batches at least");
     if (options.photons < 1) throw std::invalid_argument("there are no photons to trace");
+    if (!(options.near_eye >= 0.0)) throw std::invalid_argument("near_eye is not a distance");
     const auto is_spot = [&](const scenes::Mesh& mesh) { return mesh.name == options.spot_mesh; };
     if (!options.spot_mesh.empty() && std::none_of(scene.meshes.begin(), scene.meshes.end(), is_spot)) {
         throw std::invalid_argument("the scene has no mesh " + options.spot_mesh);
@@ -179,6 +181,7 @@ Result trace(const scenes::Scene& scene, const Options& options) {
                 Random random(other_seed, 2 * (batch * batch_photons + number) + 1);
                 tracer.trace_direct(start, random, tally);
             });
+            if (options.scattering) scatter_near_eye(world, camera, first_legs, result.mask, options, batch, tally.scattered_direct);
         });
         for (std::size_t batch = first; batch < last; ++batch) {
             Tally& tally = batches[batch];

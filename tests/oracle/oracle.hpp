@@ -16,8 +16,9 @@
 //
 // Media given by a grid: densities at cells' centres, trilinear between them, clamped in the outer cells' outer halves, 0
 // outside the box. Media outside dielectrics have no end: where the eye meets nothing it sees all that lamps light there,
-// but of directional lights only what lies in the box round the scene. Light scattered close by the eye is given by few
-// photons of great weight, and its standard errors are then too small: keep lamps' light off the eye, or fog.
+// but of directional lights only what lies in the box round scene and eye. Their light starts in a plane across it, the
+// scene's diagonal before its middle, and media dim it from there. Caustics scattered close by the eye are given by few
+// photons of great weight, and their standard errors are then too small: keep them off the eye.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,7 +45,8 @@ struct Options {
     bool attenuate_view = true;         // whether media also dim what lies between the surface and the eye
     bool direct = false;                // Result::direct; as many photons more
     bool scattering = false;            // Result::scattered_direct and scattered_caustic; the same photons more
-    bool environment = false;           // surroundings light specular surfaces, as lamps do
+    double near_eye = 1.0;              // m; nearer than that scattered_direct is sampled from the eye, see near_eye.hpp
+    bool environment = false;           // surroundings light specular surfaces, as lamps do: part of all that is caustic
     std::string spot_mesh = {};         // the receiver whose landing points are kept for Result::spots
     int threads = 0;                    // 0: one per core; the result does not depend on it
 };

@@ -36,6 +36,7 @@ constexpr const char* usage =
     "  --no-dispersion, --no-media, --no-view-attenuation\n"
     "  --direct              light straight from lamps too\n"
     "  --scattering          light that media scatter once too\n"
+    "  --near-eye METRES     nearer than that scattered light straight from lamps is looked for from the eye (1)\n"
     "  --environment FILE    a lat-long picture of the surroundings, EXR or HDR, whose light the caustic holds too\n"
     "  --medium FILE         media, JSON, instead of the scene's\n"
     "  --threads N           (one per core)\n"
@@ -81,6 +82,7 @@ Arguments parse(const std::vector<std::string>& words) {
         else if (word == "--no-view-attenuation") options.attenuate_view = false;
         else if (word == "--direct") options.direct = true;
         else if (word == "--scattering") options.scattering = true;
+        else if (word == "--near-eye") options.near_eye = to_number(value());
         else if (word == "--environment") arguments.environment = value();
         else if (word == "--medium") arguments.medium = value();
         else if (word == "-o") arguments.output = value();

@@ -239,6 +239,7 @@ void PhotonTracer::add_scattered(const Path& path, const Region::Collision& coll
     const Vec3 position = path.ray.origin + collision.distance * path.ray.direction;
     const auto connection = connect(world_, camera_, {position, none, path.inside}, options_.attenuate_view, random);
     if (!connection) return;
+    if (path.events == 0 && connection->distance < options_.near_eye) return;  // scatter_near_eye()'s
     const double cosine = dot(path.ray.direction, camera_.eye() - position) / connection->distance;
     add(layer, connection->pixel, flux * phase(cosine, medium.g) * connection->radiance());
 }

@@ -1,6 +1,5 @@
 // Light that media scatter once, against quadrature along the eye's rays.
 //
-// The eye stands in the dark in each: light scattered close by it would take any number of photons to average out.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -104,6 +103,58 @@ TEST_CASE("a lamp's beam in fog is its integral along the eye's ray") {
     }
 }
 
+TEST_CASE("light scattered close by the eye counts once, wherever the zone ends in which the eye looks for it") {
+    // A lamp behind the eye that lights all it sees, and the eye's own place.
+    const Vec3 bulb{-1.5, 2.5, 3.5};
+    scenes::Scene scene = room(ceiling_lamp);
+    scene.lights.clear();
+    add_point(scene, bulb, 5.0);
+    add_fog(scene, {0.2f, 0.3f, 0.1f}, {0.1f, 0.0f, 0.1f}, 0.5);
+    const double sigma_s = 0.3f;
+    struct Case {
+        double zone;
+        std::uint64_t photons;
+        int batches;
+        double precision;
+    };
+    // The last as far as the walls: no photon is needed.
+    for (const Case& c : {Case{1.0, 4'000'000, 64, 0.005}, Case{2.5, 4'000'000, 160, 0.005}, Case{12.0, 4'000, 4'000, 0.0025}}) {
+        INFO("zone ", c.zone);
+        const Result result = trace(scene, {.photons = c.photons, .batches = c.batches, .width = 20, .height = 15, .scattering = true, .near_eye = c.zone});
+        check_pixels(scene, result, result.scattered_direct, {.precision = c.precision}, [&](const Ray& ray) -> std::optional<double> {
+            return along(ray, 0.0, exit_of(ray, room_low, room_high), [&](const Vec3& point, double t) {
+                const Vec3 from_lamp = point - bulb;
+                const double distance = length(from_lamp), cosine = dot(from_lamp / distance, -ray.direction);
+                return sigma_s * henyey_greenstein(cosine, 0.5) * 5.0 / (distance * distance) * std::exp(-sigma_s * (distance + t));
+            });
+        });
+    }
+    // A lamp in a box lights neither zone.
+    add_box(scene, "box", 0, bulb - Vec3{0.1, 0.1, 0.1}, bulb + Vec3{0.1, 0.1, 0.1});
+    CHECK(trace(scene, {.photons = 10'000, .width = 20, .height = 15, .scattering = true}).scattered_direct.picture.value == Vec3{});
+}
+
+TEST_CASE("sunlight scattered in fog shows all the way from the eye to what it sees") {
+    // The eye is far above all that there is; the sun's light is dimmed from its plane on.
+    scenes::Scene scene;
+    add_sheet(scene, "floor", add_lambert(scene, 0.5), {-3.0, 0.0, -3.0}, {0.0, 0.0, 6.0}, {6.0, 0.0, 0.0});
+    set_camera(scene, {0.5, 2.5, 3.0}, {0.0, 0.0, 0.0}, 0.5);
+    const Vec3 sun = normalize({0.3, -1.0, 0.2});
+    add_sun(scene, sun, 3.0);
+    add_fog(scene, glm::vec3(0.1f), glm::vec3(0.02f), 0.6);
+    const double sigma_s = 0.1f, sigma_t = sigma_s + 0.02f, plane = -length(Vec3{6.0, 0.0, 6.0});  // before the middle, the origin
+    for (const double zone : {1.0, 2.0}) {
+        const Result result = trace(scene, {.photons = 4'000'000, .batches = 64, .width = 20, .height = 15, .scattering = true, .near_eye = zone});
+        check_pixels(scene, result, result.scattered_direct, {.precision = 0.005}, [&](const Ray& ray) -> std::optional<double> {
+            const Vec3 end = ray.origin - (ray.origin.y / ray.direction.y) * ray.direction;
+            if (!(ray.direction.y < 0.0) || std::max(std::abs(end.x), std::abs(end.z)) > 2.9) return std::nullopt;
+            return along(ray, 0.0, length(end - ray.origin), [&](const Vec3& point, double t) {
+                return sigma_s * henyey_greenstein(dot(sun, -ray.direction), 0.6f) * 3.0 * std::exp(-sigma_t * (dot(point, sun) - plane + t));
+            });
+        });
+    }
+}
+
 TEST_CASE("glTF's range and undimmed views reach scattered light too") {
     scenes::Scene scene = room(ceiling_lamp);
     add_fog(scene, glm::vec3(0.3f), glm::vec3(0.0f), 0.3);
@@ -146,7 +197,8 @@ TEST_CASE("a cloud given by a grid scatters as its densities say") {
     const auto check = [&](int channel) {
         const Result result = trace(scene, {.photons = 7'000'000, .width = 20, .height = 15, .scattering = true});
         const double sigma_s = cloud.sigma_s[channel], sigma_t = sigma_s + static_cast<double>(cloud.sigma_a[channel]);
-        check_pixels(scene, result, result.scattered_direct, {.channel = channel, .steps = 4, .slack = 0.01, .sum_slack = 1e-3}, [&](const Ray& ray) -> std::optional<double> {
+        const PixelCheck how{.channel = channel, .steps = 4, .slack = 0.01, .sum_slack = 1e-3};
+        check_pixels(scene, result, result.scattered_direct, how, [&](const Ray& ray) -> std::optional<double> {
             const auto [first, last] = box.overlap(ray, exit_of(ray, room_low, room_high));
             if (!(first < last)) return 0.0;
             if (last - first < 0.3) return std::nullopt;  // its edges
@@ -218,7 +270,8 @@ TEST_CASE("what media scatter is their share of what they take") {
     CHECK(result.scattered_direct.flux.value == Vec3{});
     for (int k = 0; k < 3; ++k) {
         const double glass = std::log(2.0) / 0.5, sigma_t = static_cast<double>(fog.sigma_s[k] + fog.sigma_a[k]) + glass;
-        check(k, result.scattered_caustic.flux, result.emitted.value[k] * static_cast<double>(fog.sigma_s[k]) / sigma_t * (1.0 - std::exp(-sigma_t * 0.5)));
+        const double stopped = result.emitted.value[k] * (1.0 - std::exp(-sigma_t * 0.5));
+        check(k, result.scattered_caustic.flux, stopped * static_cast<double>(fog.sigma_s[k]) / sigma_t);
     }
 }
 
@@ -257,7 +310,8 @@ TEST_CASE("under water the eye sees scattered sunlight and the floor through wat
             const Vec3 end = ray.origin + t * ray.direction;
             return end.y < -0.05 && end.x > -2.9 && end.x < 2.9 && end.z < 2.9;
         };
-        check_pixels(scene, result, result.scattered_caustic, {.channel = channel, .steps = 3, .slack = 0.005, .sum_slack = 5e-4}, [&](const Ray& ray) -> std::optional<double> {
+        const PixelCheck how{.channel = channel, .steps = 3, .slack = 0.005, .sum_slack = 5e-4};
+        check_pixels(scene, result, result.scattered_caustic, how, [&](const Ray& ray) -> std::optional<double> {
             if (!in_view(ray)) return std::nullopt;
             return along(ray, 0.0, exit_of(ray, low, high), [&](const Vec3& point, double t) {
                 if (!is_lit(point)) return 0.0;
@@ -266,7 +320,8 @@ TEST_CASE("under water the eye sees scattered sunlight and the floor through wat
             });
         });
         // The floor's caustic: sunlight that came in, and the way back to the eye through the same water.
-        check_pixels(scene, result, {result.image, result.image_error, {}, {}}, {.channel = channel, .steps = 3}, [&](const Ray& ray) -> std::optional<double> {
+        const Layer caustic{result.image, result.image_error, {}, {}};
+        check_pixels(scene, result, caustic, {.channel = channel, .steps = 3}, [&](const Ray& ray) -> std::optional<double> {
             const double t = exit_of(ray, low, high);
             const Vec3 end = ray.origin + t * ray.direction;
             if (!in_view(ray) || end.y > -1.999 || end.z < -2.9 || !is_lit(end + Vec3{0.0, 0.0, 0.05}) || !is_lit(end)) return std::nullopt;

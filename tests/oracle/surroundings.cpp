@@ -43,7 +43,8 @@ Surroundings::Sample Surroundings::sample(double chosen, Random& random) const {
 }
 
 Rgb Surroundings::radiance(const Vec3& direction) const {
-    const double u = std::atan2(direction.x, -direction.z) / (2.0 * std::numbers::pi) + 0.5, v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / std::numbers::pi;
+    const double u = std::atan2(direction.x, -direction.z) / (2.0 * std::numbers::pi) + 0.5;
+    const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / std::numbers::pi;
     const auto x = static_cast<std::size_t>(std::min(static_cast<int>(u * picture_.width), picture_.width - 1));
     const auto y = static_cast<std::size_t>(std::min(static_cast<int>(v * picture_.height), picture_.height - 1));
     return texel(picture_, y * static_cast<std::size_t>(picture_.width) + x);

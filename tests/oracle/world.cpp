@@ -119,7 +119,8 @@ std::uint32_t World::mesh_around(const Vec3& point) const {
     std::map<std::uint32_t, int> votes;
     for (int k = 0; k < lines; ++k) {
         // Fibonacci's spiral over the sphere.
-        const double height = 1.0 - (2.0 * k + 1.0) / lines, angle = k * std::numbers::pi * (3.0 - std::sqrt(5.0)), radius = std::sqrt(1.0 - height * height);
+        const double height = 1.0 - (2.0 * k + 1.0) / lines, radius = std::sqrt(1.0 - height * height);
+        const double angle = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
         const Ray ray{point, {radius * std::cos(angle), height, radius * std::sin(angle)}};
         Hit hit;
         if (!bvh_.closest(ray, [&](std::uint32_t triangle) { return surface(triangle).type == SurfaceType::Refractor; }, hit)) continue;

@@ -1,6 +1,7 @@
 #include "camera.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "parallel.hpp"
 
@@ -38,6 +39,40 @@ std::optional<Camera::Projection> Camera::project(const Vec3& point) const {
 Ray Camera::ray(double x, double y) const {
     const double u = (2.0 * x / width_ - 1.0) * tangent_x_, v = (1.0 - 2.0 * y / height_) * tangent_y_;
     return {eye_, forward_ + u * right_ + v * up_};
+}
+
+// The box's faces, each cut by the pyramid's four planes, and its apex where that is in the box: all corners of both
+// together, since the pyramid's edges run from its apex to infinity.
+std::vector<Vec3> Camera::visible_part(const Vec3& low, const Vec3& high) const {
+    const Vec3 inwards[4] = {tangent_x_ * forward_ + right_, tangent_x_ * forward_ - right_, tangent_y_ * forward_ + up_, tangent_y_ * forward_ - up_};
+    std::vector<Vec3> corners;
+    if (!(low.x <= high.x)) return corners;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (const double side : {low[axis], high[axis]}) {
+            std::vector<Vec3> polygon(4);
+            for (std::size_t k = 0; k < 4; ++k) {
+                polygon[k][axis] = side;
+                polygon[k][u] = k == 1 || k == 2 ? high[u] : low[u];
+                polygon[k][v] = k >= 2 ? high[v] : low[v];
+            }
+            for (const Vec3& normal : inwards) {
+                std::vector<Vec3> cut;
+                for (std::size_t k = 0; k < polygon.size(); ++k) {
+                    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+                    const double height_a = dot(a - eye_, normal), height_b = dot(b - eye_, normal);
+                    if (height_a >= 0.0) cut.push_back(a);
+                    if ((height_a >= 0.0) != (height_b >= 0.0)) cut.push_back(a + (height_a / (height_a - height_b)) * (b - a));
+                }
+                polygon = std::move(cut);
+            }
+            corners.insert(corners.end(), polygon.begin(), polygon.end());
+        }
+    }
+    bool holds_eye = true;
+    for (int k = 0; k < 3; ++k) holds_eye = holds_eye && eye_[k] >= low[k] && eye_[k] <= high[k];
+    if (holds_eye) corners.push_back(eye_);
+    return corners;
 }
 
 bool is_drawn(const World& world, std::uint32_t triangle, const Vec3& eye_direction) {

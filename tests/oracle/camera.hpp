@@ -24,6 +24,10 @@ public:
     // The ray through a place of the picture in pixels from its top left corner; not of unit length.
     Ray ray(double x, double y) const;
 
+    // The corners of the part of a box that lies in the picture's pyramid, some of them several times; none where they do
+    // not meet.
+    std::vector<Vec3> visible_part(const Vec3& low, const Vec3& high) const;
+
     const Vec3& eye() const { return eye_; }
     int width() const { return width_; }
     int height() const { return height_; }

@@ -19,7 +19,7 @@ void Emission::for_each(std::uint64_t seed, std::uint64_t batch, std::uint64_t c
     std::uint64_t number = 0;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         const Cell& cell = cells_[c];
-        const bool is_last = c + 1 == cells_.size();
+        const bool is_last = c + 1 == cells_.size() && surroundings_share_ == 0.0;
         const double end = is_last ? total : std::min(total, std::ceil((cell.before + cell.share) * total - shift));
         double u = batch_random.next(), v = batch_random.next();
         for (; static_cast<double>(number) < end; ++number) {
@@ -29,6 +29,12 @@ void Emission::for_each(std::uint64_t seed, std::uint64_t batch, std::uint64_t c
             u -= std::floor(u);
             v -= std::floor(v);
         }
+    }
+    // The surroundings' texels are chosen evenly, by the running sum of their power.
+    const double chosen_shift = surroundings_share_ > 0.0 ? batch_random.next() : 0.0;
+    for (const std::uint64_t first = number; number < count && surroundings_share_ > 0.0; ++number) {
+        const double chosen = (static_cast<double>(number - first) + chosen_shift) / static_cast<double>(count - first);
+        visit(start_from_surroundings(chosen, batch_random, total), number);
     }
 }
 

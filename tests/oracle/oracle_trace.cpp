@@ -1,6 +1,7 @@
-// The oracle as a program: a scene's caustic layer to a picture file, its totals as JSON to standard output.
+// The oracle as a program: a scene's caustic layer, and others on request, to a picture file, its totals as JSON to standard output.
 #include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "oracle/oracle.hpp"
@@ -32,12 +34,18 @@ constexpr const char* usage =
     "  --flat-normals        the triangles' own normals\n"
     "  --no-correction       no adjoint correction for interpolated normals\n"
     "  --no-dispersion, --no-media, --no-view-attenuation\n"
+    "  --direct              light straight from lamps too\n"
+    "  --scattering          light that media scatter once too\n"
+    "  --near-eye METRES     nearer than that scattered light straight from lamps is looked for from the eye (1)\n"
+    "  --environment FILE    a lat-long picture of the surroundings, EXR or HDR, whose light the caustic holds too\n"
+    "  --medium FILE         media, JSON, instead of the scene's\n"
     "  --threads N           (one per core)\n"
-    "  -o FILE               the caustic layer: R, G, B, mask, and standard errors R.error, G.error, B.error\n"
+    "  -o FILE               the caustic layer: R, G, B, mask, and standard errors R.error, G.error, B.error;\n"
+    "                        on request the same of direct.R ..., scattered_direct.R ..., scattered_caustic.R ...\n"
     "  --stats FILE          the totals to a file instead of standard output\n";
 
 struct Arguments {
-    std::string scene, output, stats;
+    std::string scene, output, stats, environment, medium;
     oracle::Options options;
 };
 
@@ -72,6 +80,11 @@ Arguments parse(const std::vector<std::string>& words) {
         else if (word == "--no-dispersion") options.dispersion = false;
         else if (word == "--no-media") options.media = false;
         else if (word == "--no-view-attenuation") options.attenuate_view = false;
+        else if (word == "--direct") options.direct = true;
+        else if (word == "--scattering") options.scattering = true;
+        else if (word == "--near-eye") options.near_eye = to_number(value());
+        else if (word == "--environment") arguments.environment = value();
+        else if (word == "--medium") arguments.medium = value();
         else if (word == "-o") arguments.output = value();
         else if (word == "--stats") arguments.stats = value();
         else if (word == "--size") {
@@ -84,6 +97,7 @@ Arguments parse(const std::vector<std::string>& words) {
         else throw std::invalid_argument("unknown argument " + word);
     }
     if (arguments.scene.empty()) throw std::invalid_argument("which scene?");
+    options.environment = !arguments.environment.empty();
     return arguments;
 }
 
@@ -94,6 +108,10 @@ ordered_json to_json(const oracle::SpotReport& report) {
     return {{"flux", s.flux},           {"flux_error", e.flux},           {"centroid", to_json(s.centroid)}, {"centroid_error", to_json(e.centroid)},
             {"radius_25", s.radius_25}, {"radius_25_error", e.radius_25}, {"radius_50", s.radius_50},        {"radius_50_error", e.radius_50},
             {"radius_90", s.radius_90}, {"radius_90_error", e.radius_90}};
+}
+
+std::array<std::pair<const char*, const oracle::Layer*>, 3> layers_of(const oracle::Result& result) {
+    return {{{"direct", &result.direct}, {"scattered_direct", &result.scattered_direct}, {"scattered_caustic", &result.scattered_caustic}}};
 }
 
 ordered_json to_json(const oracle::Result& result, const scenes::Scene& scene, const Arguments& arguments, double seconds) {
@@ -115,6 +133,11 @@ ordered_json to_json(const oracle::Result& result, const scenes::Scene& scene, c
     json["escaped"] = to_json(result.escaped);
     json["truncated"] = to_json(result.truncated);
     json["correction"] = to_json(result.correction);
+    for (const auto& [name, layer] : layers_of(result)) {
+        if (layer->image.empty()) continue;
+        json[name]["picture"] = to_json(layer->picture);
+        json[name]["flux"] = to_json(layer->flux);
+    }
     // Meshes may share a name; their order tells them apart.
     json["receivers"] = ordered_json::array();
     for (std::size_t m = 0; m < result.receivers.size(); ++m) {
@@ -140,17 +163,26 @@ ordered_json to_json(const oracle::Result& result, const scenes::Scene& scene, c
 }
 
 void write_image(const oracle::Result& result, const std::string& path) {
-    constexpr std::size_t channels = 7;
-    std::vector<float> pixels(channels * result.mask.size());
-    for (std::size_t k = 0; k < result.mask.size(); ++k) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            pixels[channels * k + c] = static_cast<float>(result.image[3 * k + c]);
-            pixels[channels * k + 4 + c] = static_cast<float>(result.image_error[3 * k + c]);
-        }
-        pixels[channels * k + 3] = result.mask[k];
+    std::vector<std::string> names{"R", "G", "B", "mask", "R.error", "G.error", "B.error"};
+    std::vector<const oracle::Layer*> layers;
+    for (const auto& [name, layer] : layers_of(result)) {
+        if (layer->image.empty()) continue;
+        layers.push_back(layer);
+        for (const char* channel : {".R", ".G", ".B", ".R.error", ".G.error", ".B.error"}) names.push_back(std::string(name) + channel);
     }
-    OIIO::ImageSpec spec(result.width, result.height, static_cast<int>(channels), OIIO::TypeDesc::FLOAT);
-    spec.channelnames = {"R", "G", "B", "mask", "R.error", "G.error", "B.error"};
+    std::vector<float> pixels;
+    pixels.reserve(names.size() * result.mask.size());
+    for (std::size_t k = 0; k < result.mask.size(); ++k) {
+        const auto add = [&](const std::vector<double>& image) {
+            for (std::size_t c = 0; c < 3; ++c) pixels.push_back(static_cast<float>(image[3 * k + c]));
+        };
+        add(result.image);
+        pixels.push_back(result.mask[k]);
+        add(result.image_error);
+        for (const oracle::Layer* layer : layers) add(layer->image), add(layer->image_error);
+    }
+    OIIO::ImageSpec spec(result.width, result.height, static_cast<int>(names.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = names;
     const auto file = OIIO::ImageOutput::create(path);
     if (!file || !file->open(path, spec) || !file->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) || !file->close()) {
         throw std::runtime_error("cannot write " + path + ": " + (file ? file->geterror() : OIIO::geterror()));
@@ -173,7 +205,9 @@ int main(int count, char** words) {
             return 2;
         }
         const Arguments arguments = parse({words + 1, words + count});
-        const scenes::Scene scene = scenes::load_scene(arguments.scene);
+        scenes::Scene scene = scenes::load_scene(arguments.scene);
+        if (!arguments.environment.empty()) scene.environment = scenes::load_environment(arguments.environment);
+        if (!arguments.medium.empty()) scenes::set_media(scene, arguments.medium);
         const auto begin = std::chrono::steady_clock::now();
         const oracle::Result result = oracle::trace(scene, arguments.options);
         const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;

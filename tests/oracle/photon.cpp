@@ -1,12 +1,12 @@
 #include "photon.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace nephroid::oracle {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffffu;
 constexpr int all_channels = -1;
 
 }  // namespace
@@ -34,7 +34,7 @@ PhotonTracer::PhotonTracer(const World& world, const Camera& camera, const std::
 
 void PhotonTracer::trace(const Start& start, Random& random, Tally& tally) const {
     if (!(sum(start.flux) > 0.0)) return;
-    Path path{.ray = start.ray, .flux = start.flux, .range = start.range};
+    const Path path{.ray = start.ray, .flux = start.flux, .range = start.range, .inside = start.inside};
     std::vector<Path> branches;
     if (world_.is_dispersive()) {
         // One photon for each channel, of the same start.
@@ -55,25 +55,46 @@ void PhotonTracer::trace(const Start& start, Random& random, Tally& tally) const
     }
 }
 
+void PhotonTracer::trace_direct(const Start& start, Random& random, Tally& tally) const {
+    if (!(sum(start.flux) > 0.0)) return;
+    Path path{.ray = start.ray, .flux = start.flux, .range = start.range, .inside = start.inside};
+    Hit hit;
+    const bool is_hit = closest(path, hit);
+    if (options_.scattering) scatter_once(path, is_hit ? hit.distance : std::numeric_limits<double>::infinity(), random, tally.scattered_direct);
+    if (!options_.direct || !is_hit || world_.surface(hit.triangle).is_specular()) return;
+    const Rgb flux = path.flux * world_.region(path.inside).transmittance(path.ray, hit.distance, random) * range_window(hit.distance, path.range);
+    tally.direct.flux += flux;
+    if (const auto seen = see(path, hit, random)) add(tally.direct, seen->pixel, flux * seen->radiance);
+}
+
+// What the path meets next, and on its first leg whether it runs in glass.
+bool PhotonTracer::closest(Path& path, Hit& hit) const {
+    path.ray.near = path.left == none ? 0.0 : near_;
+    const bool is_hit = world_.bvh().closest(path.ray, [&](std::uint32_t triangle) { return triangle != path.left; }, hit);
+    if (path.events > 0 || !is_hit) return is_hit;
+    // Light that starts inside glass shows it by what it hits.
+    const TriangleData& data = world_.data(hit.triangle);
+    if (world_.surface(hit.triangle).type == SurfaceType::Refractor && dot(data.normal, path.ray.direction) > 0.0) path.inside = data.mesh;
+    return is_hit;
+}
+
 void PhotonTracer::follow(Path path, Random& random, std::vector<Path>& branches, Tally& tally) const {
     for (;;) {
         Hit hit;
-        path.ray.near = path.left == none ? 0.0 : near_;
-        const bool is_hit = world_.bvh().closest(path.ray, [&](std::uint32_t triangle) { return triangle != path.left; }, hit);
+        const bool is_hit = closest(path, hit);
         if (path.events == 0) {
             if (!is_hit || !world_.surface(hit.triangle).is_specular()) return;
             tally.emitted += path.flux;
-            // Light that starts inside glass shows it by what it hits.
-            const TriangleData& data = world_.data(hit.triangle);
-            if (world_.surface(hit.triangle).type == SurfaceType::Refractor && dot(data.normal, path.ray.direction) > 0.0) path.inside = data.mesh;
+        } else if (options_.scattering) {
+            scatter_once(path, is_hit ? hit.distance : std::numeric_limits<double>::infinity(), random, tally.scattered_caustic);
         }
         if (!is_hit) {
             tally.escaped += path.flux;
             return;
         }
-        attenuate(path, hit.distance, tally);
+        attenuate(path, hit.distance, random, tally);
         if (!world_.surface(hit.triangle).is_specular()) {
-            land(path, hit, tally);
+            land(path, hit, random, tally);
             return;
         }
         if (path.events == options_.max_events) {
@@ -85,12 +106,9 @@ void PhotonTracer::follow(Path path, Random& random, std::vector<Path>& branches
 }
 
 // What media and glass take on the way to the next hit. Media given for a mesh count where the ray runs in its glass.
-void PhotonTracer::attenuate(Path& path, double distance, Tally& tally) const {
+void PhotonTracer::attenuate(Path& path, double distance, Random& random, Tally& tally) const {
     path.length += distance;
-    Rgb extinction = world_.fog().outside;
-    if (path.inside != none) extinction = world_.surface_of_mesh(path.inside).absorption + world_.fog().inside[path.inside];
-    if (extinction == Rgb{}) return;
-    const Rgb left = path.flux * Rgb{std::exp(-extinction.x * distance), std::exp(-extinction.y * distance), std::exp(-extinction.z * distance)};
+    const Rgb left = path.flux * world_.region(path.inside).transmittance(path.ray, distance, random);
     tally.absorbed += path.flux - left;
     path.flux = left;
 }
@@ -149,7 +167,7 @@ void PhotonTracer::take(Path& path, const Branch& branch, const Hit& hit, bool i
     if (is_transmitted) ++path.transmissions;
 }
 
-void PhotonTracer::land(const Path& path, const Hit& hit, Tally& tally) const {
+void PhotonTracer::land(const Path& path, const Hit& hit, Random& random, Tally& tally) const {
     const Rgb flux = path.flux * range_window(path.length, path.range);
     tally.absorbed += path.flux - flux;
     tally.deposited += flux;
@@ -174,33 +192,61 @@ void PhotonTracer::land(const Path& path, const Hit& hit, Tally& tally) const {
     if (!options_.spot_mesh.empty() && world_.mesh_names()[mesh] == options_.spot_mesh) {
         tally.landings.push_back({world_.position(hit), sum(flux) / 3.0, transmitted_only, path.first_reflected});
     }
-    splat(path, hit, flux, classes, tally);
-}
-
-// Adds to the picture what the eye sees of a landing, if it sees it.
-void PhotonTracer::splat(const Path& path, const Hit& hit, const Rgb& flux, const std::array<bool, path_class_count>& classes, Tally& tally) const {
-    const Vec3 position = world_.position(hit), view = position - camera_.eye(), normal = world_.data(hit.triangle).normal;
-    const auto projection = camera_.project(position);
-    if (!projection || !is_drawn(world_, hit.triangle, view)) return;
-    if (dot(normal, view) * dot(normal, path.ray.direction) <= 0.0) return;  // the light is on the other side
-    const Ray ray{camera_.eye(), view, 0.0, 1.0 - 1e-10};
-    const auto hides = [&](std::uint32_t triangle) { return triangle != hit.triangle && is_drawn(world_, triangle, view); };
-    if (world_.bvh().any(ray, hides)) return;
-
-    const double distance = oracle::length(view), cosine = std::abs(dot(normal, view)) / distance;
-    const double factor = cosine / (std::numbers::pi * distance * distance * projection->pixel_solid_angle);
-    Rgb radiance = flux * world_.color(hit) * factor;
-    if (options_.attenuate_view) {
-        const Rgb& fog = world_.fog().outside;
-        radiance = radiance * Rgb{std::exp(-fog.x * distance), std::exp(-fog.y * distance), std::exp(-fog.z * distance)};
-    }
-    const std::size_t pixel = static_cast<std::size_t>(projection->y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(projection->x);
-    for (std::size_t k = 0; k < 3; ++k) tally.image[3 * pixel + k] += radiance[static_cast<int>(k)];
-    if (mask_[pixel] != 0) return;
+    const auto seen = see(path, hit, random);
+    if (!seen) return;
+    const Rgb radiance = flux * seen->radiance;
+    for (std::size_t k = 0; k < 3; ++k) tally.image[3 * seen->pixel + k] += radiance[static_cast<int>(k)];
+    if (mask_[seen->pixel] != 0) return;
     tally.picture += radiance;
     for (std::size_t k = 0; k < path_class_count; ++k) {
         if (classes[k]) tally.class_picture[k] += radiance;
     }
+}
+
+std::optional<PhotonTracer::Seen> PhotonTracer::see(const Path& path, const Hit& hit, Random& random) const {
+    const Vec3 position = world_.position(hit), view = position - camera_.eye(), normal = world_.data(hit.triangle).normal;
+    if (!is_drawn(world_, hit.triangle, view)) return std::nullopt;
+    if (dot(normal, view) * dot(normal, path.ray.direction) <= 0.0) return std::nullopt;  // the light is on the other side
+    const auto connection = connect(world_, camera_, {position, hit.triangle, path.inside}, options_.attenuate_view, random);
+    if (!connection) return std::nullopt;
+    const double cosine = std::abs(dot(normal, view)) / connection->distance;
+    return Seen{connection->pixel, world_.color(hit) * connection->radiance() * (cosine / std::numbers::pi)};
+}
+
+// Sees what media scatter of the path's flux on its ray as far as `far`: where light of one kind is stopped, by chance as
+// nature does it. The path itself goes on with what is not stopped. Channels share a collision where they may.
+void PhotonTracer::scatter_once(const Path& path, double far, Random& random, LayerTally& layer) const {
+    const Region& region = world_.region(path.inside);
+    if (!region.scatters()) return;
+    if (region.is_grey()) {
+        if (const auto collision = region.collide(path.ray, far, 0, random)) add_scattered(path, *collision, path.flux, random, layer);
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!(path.flux[k] > 0.0)) continue;
+        Rgb flux;
+        flux[k] = path.flux[k];
+        if (const auto collision = region.collide(path.ray, far, k, random)) add_scattered(path, *collision, flux, random, layer);
+    }
+}
+
+void PhotonTracer::add_scattered(const Path& path, const Region::Collision& collision, const Rgb& stopped, Random& random, LayerTally& layer) const {
+    const Medium& medium = *collision.medium;
+    Rgb flux = stopped * range_window(path.length + collision.distance, path.range);
+    for (int k = 0; k < 3; ++k) flux[k] *= flux[k] > 0.0 ? medium.sigma_s[k] / medium.sigma_t[k] : 0.0;
+    if (!(sum(flux) > 0.0)) return;
+    layer.flux += flux;
+    const Vec3 position = path.ray.origin + collision.distance * path.ray.direction;
+    const auto connection = connect(world_, camera_, {position, none, path.inside}, options_.attenuate_view, random);
+    if (!connection) return;
+    if (path.events == 0 && connection->distance < options_.near_eye) return;  // scatter_near_eye()'s
+    const double cosine = dot(path.ray.direction, camera_.eye() - position) / connection->distance;
+    add(layer, connection->pixel, flux * phase(cosine, medium.g) * connection->radiance());
+}
+
+void PhotonTracer::add(LayerTally& layer, std::size_t pixel, const Rgb& radiance) const {
+    for (std::size_t k = 0; k < 3; ++k) layer.image[3 * pixel + k] += radiance[static_cast<int>(k)];
+    if (mask_[pixel] == 0) layer.picture += radiance;
 }
 
 }  // namespace nephroid::oracle

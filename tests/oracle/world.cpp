@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <map>
+#include <numbers>
+
+#include "texel.hpp"
 
 namespace nephroid::oracle {
 namespace {
@@ -47,20 +50,9 @@ double wrap(double t, scenes::Wrap how) {
     return t;
 }
 
-// IEC 61966-2-1.
-double linear_from_srgb(std::uint8_t byte) {
-    const double s = byte / 255.0;
-    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
-
 Rgb nearest_texel(const scenes::Image& image, double u, double v) {
     const int x = std::min(static_cast<int>(u * image.width), image.width - 1), y = std::min(static_cast<int>(v * image.height), image.height - 1);
-    const std::size_t texel = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-    if (!image.srgb8.empty()) {
-        return {linear_from_srgb(image.srgb8[texel]), linear_from_srgb(image.srgb8[texel + 1]), linear_from_srgb(image.srgb8[texel + 2])};
-    }
-    if (!image.linear.empty()) return {image.linear[texel], image.linear[texel + 1], image.linear[texel + 2]};
-    return {1.0, 1.0, 1.0};
+    return texel(image, static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
 }
 
 // Every triangle of the scene that has an area, in the meshes' order, and what belongs to it.
@@ -93,41 +85,50 @@ std::vector<Triangle> gather_triangles(const scenes::Scene& scene, std::vector<T
     return triangles;
 }
 
-Fog gather_fog(const scenes::Scene& scene) {
-    Fog fog;
-    fog.inside.resize(scene.meshes.size());
-    for (const scenes::Medium& medium : scene.media) {
-        if (medium.type == scenes::Medium::Type::None) continue;
-        if (medium.type == scenes::Medium::Type::Grid) throw std::invalid_argument("the oracle does not know media given by a grid");
-        const Rgb extinction = to_vec3(medium.sigma_s) + to_vec3(medium.sigma_a);
-        if (medium.inside.empty()) fog.outside += extinction;
-        for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-            if (!medium.inside.empty() && scene.meshes[m].name == medium.inside) fog.inside[m] += extinction;
-        }
-    }
-    return fog;
-}
-
 }  // namespace
 
 World::World(const scenes::Scene& scene, bool dispersion, bool media) : images_(scene.images), bvh_(gather_triangles(scene, data_)) {
     for (const scenes::Material& material : scene.materials) surfaces_.push_back(make_surface(material, dispersion));
     for (const scenes::Mesh& mesh : scene.meshes) {
-        mesh_surfaces_.push_back(static_cast<std::uint32_t>(mesh.material));
         mesh_names_.push_back(mesh.name);
-        const Surface& surface = surfaces_[mesh_surfaces_.back()];
+        const Surface& surface = surfaces_[static_cast<std::size_t>(mesh.material)];
         is_dispersive_ = is_dispersive_ || surface.ior.x != surface.ior.z;
+        inside_.emplace_back().add(Medium(surface.absorption));
     }
-    if (media) fog_ = gather_fog(scene);
-    else fog_.inside.resize(scene.meshes.size());
-    for (const Triangle& triangle : bvh_.triangles()) {
-        for (const Vec3& corner : {triangle.a, triangle.b, triangle.c}) {
-            for (int k = 0; k < 3; ++k) {
-                low_[k] = std::min(low_[k], corner[k]);
-                high_[k] = std::max(high_[k], corner[k]);
-            }
+    for (const scenes::Medium& medium : scene.media) {
+        if (!media || medium.type == scenes::Medium::Type::None) continue;
+        const Medium filling(medium);
+        if (medium.inside.empty()) outside_.add(filling);
+        if (medium.inside.empty() && filling.is_grid) enclose(filling.low), enclose(filling.high);
+        for (std::size_t m = 0; m < inside_.size(); ++m) {
+            if (!medium.inside.empty() && mesh_names_[m] == medium.inside) inside_[m].add(filling);
         }
     }
+    for (const Triangle& triangle : bvh_.triangles()) enclose(triangle.a), enclose(triangle.b), enclose(triangle.c);
+}
+
+void World::enclose(const Vec3& point) {
+    for (int k = 0; k < 3; ++k) {
+        low_[k] = std::min(low_[k], point[k]);
+        high_[k] = std::max(high_[k], point[k]);
+    }
+}
+
+std::uint32_t World::mesh_around(const Vec3& point) const {
+    constexpr int lines = 64;
+    std::map<std::uint32_t, int> votes;
+    for (int k = 0; k < lines; ++k) {
+        // Fibonacci's spiral over the sphere.
+        const double height = 1.0 - (2.0 * k + 1.0) / lines, radius = std::sqrt(1.0 - height * height);
+        const double angle = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
+        const Ray ray{point, {radius * std::cos(angle), height, radius * std::sin(angle)}};
+        Hit hit;
+        if (!bvh_.closest(ray, [&](std::uint32_t triangle) { return surface(triangle).type == SurfaceType::Refractor; }, hit)) continue;
+        const TriangleData& met = data(hit.triangle);
+        ++votes[dot(met.normal, ray.direction) > 0.0 ? met.mesh : none];
+    }
+    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+    return votes.empty() ? none : std::max_element(votes.begin(), votes.end(), fewer)->first;
 }
 
 Vec3 World::position(const Hit& hit) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bvh.hpp"
+#include "medium.hpp"
 #include "scenes/scene.hpp"
 #include "vector.hpp"
 
@@ -20,7 +21,7 @@ struct Surface {
     int image = -1;
     scenes::Wrap wrap_u = scenes::Wrap::Repeat, wrap_v = scenes::Wrap::Repeat;
     Rgb ior;         // per channel (KHR_materials_dispersion), all the same where nothing is dispersed; 0: reflects all
-    Rgb absorption;  // 1/m inside
+    Rgb absorption;  // 1/m inside; infinite where nothing gets through
     bool double_sided = false;
 
     bool is_specular() const { return type != SurfaceType::Receiver; }
@@ -34,25 +35,27 @@ struct TriangleData {
     std::uint32_t mesh = 0, surface = 0;
 };
 
-// Extinction in 1/m per channel.
-struct Fog {
-    Rgb outside;              // of dielectrics
-    std::vector<Rgb> inside;  // of each mesh, added to its material's absorption
-};
+// Stands for no triangle, or for no mesh: the space outside dielectrics.
+inline constexpr std::uint32_t none = 0xffffffffu;
 
 class World {
 public:
     // Keeps a reference to the scene's images. With `dispersion` off every channel has the material's own ior.
-    // Throws std::invalid_argument for what the oracle cannot do: media given by a grid.
+    // Without `media` nothing but the glass itself absorbs.
     World(const scenes::Scene& scene, bool dispersion, bool media);
 
     const Bvh& bvh() const { return bvh_; }
     const TriangleData& data(std::uint32_t triangle) const { return data_[triangle]; }
     const Surface& surface(std::uint32_t triangle) const { return surfaces_[data_[triangle].surface]; }
-    const Surface& surface_of_mesh(std::size_t mesh) const { return surfaces_[mesh_surfaces_[mesh]]; }
     const std::vector<std::string>& mesh_names() const { return mesh_names_; }
-    const Fog& fog() const { return fog_; }
+    // What fills a mesh's glass, its own absorption included, or the space outside dielectrics (none).
+    const Region& region(std::uint32_t mesh) const { return mesh == none ? outside_ : inside_[mesh]; }
     bool is_dispersive() const { return is_dispersive_; }
+    // The mesh in whose glass a point lies, or none: what most of the lines from it that meet glass find, by the side they
+    // hit, as geometry decides for rays.
+    std::uint32_t mesh_around(const Vec3& point) const;
+
+    // The box round all triangles, and round the grids outside dielectrics.
     const Vec3& low() const { return low_; }
     const Vec3& high() const { return high_; }
 
@@ -63,12 +66,14 @@ public:
     Rgb color(const Hit& hit) const;
 
 private:
+    void enclose(const Vec3& point);
+
     std::span<const scenes::Image> images_;
     std::vector<Surface> surfaces_;              // one per material
-    std::vector<std::uint32_t> mesh_surfaces_;
     std::vector<std::string> mesh_names_;
     std::vector<TriangleData> data_;
-    Fog fog_;
+    Region outside_;
+    std::vector<Region> inside_;                 // one per mesh
     bool is_dispersive_ = false;
     Vec3 low_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     Vec3 high_ = -low_;

@@ -41,6 +41,7 @@ Comparison compare_with_truth(Device& device, const scenes::Scene& scene, const 
     options.photons = photons;
     options.width = settings.width;
     options.height = settings.height;
+    options.attenuate_view = false;  // what a later version draws: what the water round the eye takes of what it sees
     c.truth = oracle::trace(scene, options);
     const int width = settings.width, height = settings.height;
     for (std::size_t pixel = 0; pixel < c.truth.mask.size(); ++pixel) {

@@ -84,19 +84,21 @@ void Emission::add_lamp(std::size_t l) {
     const Lamp& lamp = lamps_[l];
     const std::size_t first_view = views_.size();
     if (lamp.type == scenes::LightType::Directional) {
-        // A square across the direction, in front of everything, that holds all that is specular.
-        Vec s, t, low(std::numeric_limits<double>::infinity()), high = -low;
+        // A square across the direction where the light comes in, that holds all that is specular.
+        Vec s, t;
         basis(lamp.direction, s, t);
+        glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
         const Geometry& g = world_.geometry();
-        for (std::uint32_t k = 0; k < g.triangles().size(); ++k)
+        for (std::uint32_t k = 0; k < g.triangles().size(); ++k) {
+            if (!world_.surface_of_mesh(g.triangles()[k].mesh).specular()) continue;
             for (int c = 0; c < 3; ++c) {
-                const Vec p = g.corner(k, c), q(glm::dot(p, s), glm::dot(p, t), glm::dot(p, lamp.direction));
-                low.z = std::min(low.z, q.z);
-                if (!world_.surface_of_mesh(g.triangles()[k].mesh).specular()) continue;
-                low.x = std::min(low.x, q.x), low.y = std::min(low.y, q.y), high.x = std::max(high.x, q.x), high.y = std::max(high.y, q.y);
+                const glm::dvec2 p(glm::dot(g.corner(k, c), s), glm::dot(g.corner(k, c), t));
+                low = glm::min(low, p), high = glm::max(high, p);
             }
-        const double half = 0.5 * std::max(high.x - low.x, high.y - low.y) * 1.001, ahead = low.z - 1e-3 * glm::length(g.high() - g.low());
-        const Vec centre = s * (0.5 * (low.x + high.x)) + t * (0.5 * (low.y + high.y)) + lamp.direction * ahead;
+        }
+        const double half = 0.5 * std::max(high.x - low.x, high.y - low.y) * 1.001;
+        const glm::dvec2 middle = (low + high) * 0.5;
+        const Vec centre = s * middle.x + t * middle.y - lamp.direction * world_.way_in(Vec(0.0), -lamp.direction);
         views_.push_back({centre, lamp.direction, s * half, t * half, true, l});
     } else {
         for (int face = 0; face < 6; ++face) {
@@ -188,8 +190,7 @@ bool Emission::sample(const Cell& c, const std::array<double, 2>& uv, std::uint6
             const double radius = targets_[k].radius;
             if (k == c.target || glm::dot(across, across) <= radius * radius) density += cells_[first + k].share / (std::numbers::pi * radius * radius);
         }
-        const double far = 2 * glm::length(world_.geometry().high() - world_.geometry().low());
-        start = {on_disc + s.towards * far, -s.towards, s.radiance / (s.per_solid_angle * density * count), std::numeric_limits<double>::infinity(), -1};
+        start = {on_disc + s.towards * world_.way_in(on_disc, s.towards), -s.towards, s.radiance / (s.per_solid_angle * density * count), std::numeric_limits<double>::infinity(), -1};
         return true;
     }
     const View& view = views_[c.view];

@@ -58,7 +58,7 @@ void EyeTracer::follow(Path path, std::uint32_t pixel, Random& random, std::vect
     const bool met = world_.geometry().closest_seen(path.from, path.direction, hit);
     const double length = met ? hit.distance : std::numeric_limits<double>::infinity();
     if (world_.media().scatters(path.region)) see_scattered(path, length, pixel, random, film);
-    path.weight *= world_.media().transmittance(path.region, path.from.position, path.direction, length);
+    path.weight *= world_.media().transmittance(path.region, path.from.position, path.direction, met ? length : world_.way_in(path.from.position, path.direction));
     if (!met) {
         if (!surroundings_.empty()) film.add(Term::Emission, pixel, path.weight * surroundings_.background(path.direction));
         return;
@@ -145,13 +145,13 @@ void EyeTracer::see_receiver(const Path& path, const Hit& hit, const Surface& su
         const double cosine = glm::dot(shading, a.towards);
         if (!(cosine > 0 && largest(a.irradiance) > 0 && glm::dot(geometric, a.towards) > 0)) continue;
         if (std::isinf(a.distance) ? g.blocked_to_infinity(place, a.towards) : g.blocked(place, lamp.position)) continue;
-        irradiance += a.irradiance * cosine * world_.media().transmittance(path.region, hit.position, a.towards, a.distance);
+        irradiance += a.irradiance * cosine * world_.media().transmittance(path.region, hit.position, a.towards, std::isinf(a.distance) ? world_.way_in(hit.position, a.towards) : a.distance);
     }
     if (!surroundings_.empty()) {
         const Surroundings::Sample s = surroundings_.sample(random);
         const double cosine = glm::dot(shading, s.towards);
         if (cosine > 0 && glm::dot(geometric, s.towards) > 0 && !g.blocked_to_infinity(place, s.towards))
-            irradiance += s.radiance * (cosine / s.per_solid_angle) * world_.media().transmittance(path.region, hit.position, s.towards, std::numeric_limits<double>::infinity());
+            irradiance += s.radiance * (cosine / s.per_solid_angle) * world_.media().transmittance(path.region, hit.position, s.towards, world_.way_in(hit.position, s.towards));
     }
     film.add(Term::Direct, pixel, reflects * irradiance);
     if (points != nullptr && path.events > 0) add_point(path, hit, reflects, pixel, *points);
@@ -194,7 +194,7 @@ void EyeTracer::see_scattered(const Path& path, double length, std::uint32_t pix
         if (!(largest(scattering) > 0 && largest(irradiance) > 0)) return;
         if (lamp != nullptr ? g.blocked({place}, *lamp) : g.blocked_to_infinity({place}, towards)) return;
         film.add(Term::Scattered, pixel,
-                 path.weight * media.transmittance(path.region, path.from.position, path.direction, t) * scattering * irradiance * media.transmittance(path.region, place, towards, distance) / density);
+                 path.weight * media.transmittance(path.region, path.from.position, path.direction, t) * scattering * irradiance * media.transmittance(path.region, place, towards, lamp != nullptr ? distance : world_.way_in(place, towards)) / density);
     };
     const auto place_evenly = [&](double& t, double& density) {
         if (std::isinf(length)) {

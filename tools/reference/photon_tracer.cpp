@@ -58,7 +58,7 @@ void PhotonTracer::follow(Path path, Random& random, std::vector<Path>& waiting,
         // What does not meet a specular surface first is direct light, which is seen from the eye.
         if (!met || !world_.surface(hit).specular()) return;
         eyes.account.emitted += path.flux;
-    } else if (world_.media().scatters(path.region) && path.region == eye_region_) {
+    } else if (world_.media().scatters(path.region)) {
         scatter(path, met ? hit.distance : std::numeric_limits<double>::infinity(), random, eyes);
     }
     if (!met) {
@@ -136,8 +136,9 @@ void PhotonTracer::land(const Path& path, const Hit& hit, const Surface& surface
     const double cosine = glm::dot(to, hit.normal) * side;
     if (!place || !(cosine > 0) || (world_.geometry().triangle(hit).hidden_behind && side < 0)) return;
     if (world_.geometry().hidden({hit.position, hit.normal}, camera_.eye())) return;
+    // Nothing is between: the eye is in what the photon ran in.
     const double distance = glm::length(to);
-    const Rgb through = world_.media().transmittance(eye_region_, hit.position, to / distance, distance);
+    const Rgb through = world_.media().transmittance(path.region, hit.position, to / distance, distance);
     eyes.add(Term::Caustic, place->pixel, flux * world_.color(surface, hit) * through * (cosine / distance * place->per_intensity / pi));
 }
 

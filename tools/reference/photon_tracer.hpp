@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tools/reference/account.hpp"
 #include "tools/reference/camera.hpp"
 #include "tools/reference/emission.hpp"
 #include "tools/reference/film.hpp"
@@ -12,25 +13,10 @@
 
 namespace nephroid::reference {
 
-// Where the photons' flux went, W. emitted + correction = deposited + absorbed + escaped + truncated, up to the noise of
-// branches that are followed by chance.
-struct Account {
-    Rgb emitted{0.0};     // towards specular surfaces
-    Rgb deposited{0.0};   // on receivers, before their albedo
-    Rgb absorbed{0.0};    // by tints, volumes, media and glTF's range; with what is scattered out of the way
-    Rgb escaped{0.0};     // left the scene
-    Rgb truncated{0.0};   // had more events than are followed
-    Rgb correction{0.0};  // added by the adjoint correction of interpolated normals
-    void operator+=(const Account& o) {
-        emitted += o.emitted, deposited += o.deposited, absorbed += o.absorbed, escaped += o.escaped, truncated += o.truncated, correction += o.correction;
-    }
-};
-
 class PhotonTracer {
 public:
     // Keeps references to all.
-    PhotonTracer(const World& world, const Camera& camera, Region eye_region, int max_events)
-        : world_(world), camera_(camera), eye_region_(eye_region), max_events_(max_events) {}
+    PhotonTracer(const World& world, const Camera& camera, int max_events) : world_(world), camera_(camera), max_events_(max_events) {}
 
     // `importance` of each pixel: 1 over what a contribution of this size there would be as noise; empty: not known yet.
     // Returns the sum of the photon's contributions times that, squared.
@@ -46,7 +32,6 @@ private:
 
     const World& world_;
     const Camera& camera_;
-    Region eye_region_;
     int max_events_;
 };
 

@@ -24,9 +24,8 @@ namespace nephroid::reference {
 
 namespace {
 
-constexpr std::uint32_t photons_per_pass = 1u << 19;
-// Of a pixel, in a pass: where all round it looks the same, and where there is an edge.
-constexpr int plain_samples = 1, edge_samples = 8;
+// Of a pixel, in a pass: where all round it looks the same, where a medium scatters, and where there is an edge.
+constexpr int plain_samples = 1, hazy_samples = 4, edge_samples = 8;
 // Before the picture is begun, and not in it: what the pixels hold, then what photons from each cell do to its noise.
 constexpr int pilot_rounds = 2;
 constexpr std::uint64_t pilot_passes = 2;
@@ -70,10 +69,11 @@ struct Tracer::Impl {
           emission(world, lamps, surroundings),
           eye_region(world.region_of(camera.eye())),
           eyes(world, camera, lamps, surroundings, eye_region, o.max_events),
-          photons(world, camera, eye_region, o.max_events),
+          photons(world, camera, o.max_events),
           mask(eyes.outlines()),
           halves{Film(mask.size()), Film(mask.size())},
-          squares(mask.size(), Rgb(0.0)) {
+          squares(mask.size()),
+          sum_squares(mask.size(), Rgb(0.0)) {
         const auto masked = static_cast<double>(std::count(mask.begin(), mask.end(), 1));
         if (masked > most_masked * static_cast<double>(mask.size()))
             throw std::runtime_error("outlines of specular objects are in " + std::to_string(std::lround(100 * masked / static_cast<double>(mask.size()))) +
@@ -109,7 +109,8 @@ struct Tracer::Impl {
 
     std::uint64_t passes = 0;
     std::array<Film, 2> halves;   // sums over even and odd passes
-    std::vector<Rgb> squares;     // of each pass's whole picture
+    Film squares;                     // sums of each pass's terms, squared
+    std::vector<Rgb> sum_squares;     // and of their sum
     bool is_piloted = false;
     std::vector<float> importance;  // while piloting
     std::vector<std::uint8_t> edges;
@@ -122,7 +123,7 @@ void Tracer::Impl::trace_pass(std::uint64_t seed, std::uint32_t photon_count, De
     desk.account = {};
     for (std::uint32_t p = 0; p < mask.size(); ++p) {
         Random random(mixed(seed, 1), p);
-        const int samples = edges.empty() || !edges[p] ? plain_samples : edge_samples;
+        const int samples = !edges.empty() && edges[p] ? edge_samples : world.media().anywhere() ? hazy_samples : plain_samples;
         for (int k = 0; k < samples; ++k) eyes.sample(p, 1.0 / samples, random, desk.film, emission.is_empty() ? nullptr : &desk.points);
     }
     if (emission.is_empty()) return;
@@ -139,9 +140,9 @@ void Tracer::Impl::trace_pass(std::uint64_t seed, std::uint32_t photon_count, De
 
 void Tracer::Impl::fold(const Desk& desk) {
     halves[passes & 1] += desk.film;
-    for (std::size_t p = 0; p < squares.size(); ++p) {
-        const Rgb sum = desk.film.sum(p);
-        squares[p] += sum * sum;
+    for (std::size_t p = 0; p < mask.size(); ++p) {
+        for (std::size_t t = 0; t < term_count; ++t) squares.term(t)[p] += desk.film.term(t)[p] * desk.film.term(t)[p];
+        sum_squares[p] += desk.film.sum(p) * desk.film.sum(p);
     }
     account += desk.account;
     ++passes;
@@ -199,7 +200,7 @@ void Tracer::Impl::pilot(std::vector<Desk>& desks) {
             0, pilot_passes, desks,
             [&](std::uint64_t pass, Desk& desk) {
                 desk.lesson = {std::vector<double>(emission.cell_count()), std::vector<double>(emission.cell_count())};
-                trace_pass(mixed(mixed(~options.seed, pass), static_cast<std::uint64_t>(round)), pilot_photons, desk);
+                trace_pass(mixed(mixed(~options.seed, pass), static_cast<std::uint64_t>(round)), std::min(pilot_photons, options.photons_per_pass), desk);
             },
             [&](Desk& desk) {
                 picture += desk.film;
@@ -284,6 +285,7 @@ double Tracer::Impl::noise_of(bool caustic_only) const {
 
 Tracer::Tracer(const scenes::Scene& scene, const Options& options) : impl_(std::make_unique<Impl>(scene, options)) {}
 Tracer::~Tracer() = default;
+Tracer::Tracer(Tracer&&) noexcept = default;
 
 void Tracer::run(const Limits& limits, const Listener& listener) {
     Impl& m = *impl_;
@@ -291,7 +293,7 @@ void Tracer::run(const Limits& limits, const Listener& listener) {
     std::vector<Desk> desks(static_cast<std::size_t>(m.threads()), Desk(m.mask.size()));
     m.pilot(desks);
     constexpr std::uint64_t least = 4;  // two for each half
-    const std::uint64_t most = limits.photons > 0 ? std::max<std::uint64_t>((limits.photons + photons_per_pass - 1) / photons_per_pass, least) : std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t most = limits.photons > 0 ? std::max<std::uint64_t>((limits.photons + m.options.photons_per_pass - 1) / m.options.photons_per_pass, least) : std::numeric_limits<std::uint64_t>::max();
     const auto fold = [&](Desk& desk) {
         m.fold(desk);
         double share = static_cast<double>(m.passes) / static_cast<double>(most);
@@ -301,7 +303,7 @@ void Tracer::run(const Limits& limits, const Listener& listener) {
         if (listener) listener(std::min(share, 1.0));
         return share >= 1 && m.passes >= least;
     };
-    run_passes(m.passes, most, desks, [&](std::uint64_t pass, Desk& desk) { m.trace_pass(mixed(m.options.seed, pass), photons_per_pass, desk); }, fold);
+    run_passes(m.passes, most, desks, [&](std::uint64_t pass, Desk& desk) { m.trace_pass(mixed(m.options.seed, pass), m.options.photons_per_pass, desk); }, fold);
 }
 
 PictureData Tracer::picture() const {
@@ -327,16 +329,29 @@ PictureData Tracer::error() const {
     const Film film = m.mean(2);
     const double n = static_cast<double>(m.passes);
     PictureData p{m.options.width, m.options.height, {"R.error", "G.error", "B.error"}, {}};
-    for (std::size_t k = 0; k < film.pixels(); ++k) {
-        const Rgb mean = film.sum(k), variance = glm::max(m.squares[k] / n - mean * mean, Rgb(0.0)) / std::max(n - 1, 1.0);
+    for (const char* name : term_names)
+        for (const char* c : {".R.error", ".G.error", ".B.error"}) p.channels.push_back(std::string(name) + c);
+    const auto put = [&](const Rgb& mean, const Rgb& squares) {
+        const Rgb variance = glm::max(squares / n - mean * mean, Rgb(0.0)) / std::max(n - 1, 1.0);
         for (int c = 0; c < 3; ++c) p.values.push_back(static_cast<float>(std::sqrt(variance[c])));
+    };
+    for (std::size_t k = 0; k < film.pixels(); ++k) {
+        put(film.sum(k), m.sum_squares[k]);
+        for (std::size_t t = 0; t < term_count; ++t) put(film.term(t)[k], m.squares.term(t)[k]);
     }
     return p;
 }
 
+Account Tracer::account() const {
+    Account a = impl_->account;
+    const double n = static_cast<double>(std::max<std::uint64_t>(impl_->passes, 1));
+    for (Rgb* term : {&a.emitted, &a.deposited, &a.absorbed, &a.escaped, &a.truncated, &a.correction}) *term /= n;
+    return a;
+}
+
 double Tracer::noise() const { return impl_->noise_of(false); }
 double Tracer::caustic_noise() const { return impl_->noise_of(true); }
-std::uint64_t Tracer::photons() const { return impl_->passes * photons_per_pass; }
+std::uint64_t Tracer::photons() const { return impl_->passes * impl_->options.photons_per_pass; }
 int Tracer::passes() const { return static_cast<int>(impl_->passes); }
 
 const std::vector<std::string>& Tracer::notes() const { return impl_->notes; }
@@ -369,11 +384,12 @@ private:
 State Tracer::state() const {
     const Impl& m = *impl_;
     State s = state_begins;
-    const std::uint64_t header[] = {m.digest, m.options.seed, static_cast<std::uint64_t>(m.options.width), static_cast<std::uint64_t>(m.options.height), static_cast<std::uint64_t>(m.options.max_events), m.passes};
+    const std::uint64_t header[] = {m.digest, m.options.seed, m.options.photons_per_pass, static_cast<std::uint64_t>(m.options.width), static_cast<std::uint64_t>(m.options.height), static_cast<std::uint64_t>(m.options.max_events), m.passes};
     put(s, header, sizeof header);
     for (const Film& f : m.halves)
         for (std::size_t t = 0; t < term_count; ++t) put(s, f.term(t));
-    put(s, m.squares);
+    for (std::size_t t = 0; t < term_count; ++t) put(s, m.squares.term(t));
+    put(s, m.sum_squares);
     put(s, m.edges);
     put(s, m.emission.learned());
     put(s, &m.account, sizeof m.account);
@@ -385,23 +401,25 @@ void Tracer::resume(const State& state) {
     if (!state.starts_with(state_begins)) throw std::runtime_error("is not a picture to go on with");
     const std::string bytes = state.substr(sizeof state_begins - 1);
     Reader r(bytes);
-    std::uint64_t header[6];
+    std::uint64_t header[7];
     r.get(header, sizeof header);
-    if (header[0] != m.digest || header[1] != m.options.seed || header[2] != static_cast<std::uint64_t>(m.options.width) || header[3] != static_cast<std::uint64_t>(m.options.height) ||
-        header[4] != static_cast<std::uint64_t>(m.options.max_events))
+    if (header[0] != m.digest || header[1] != m.options.seed || header[2] != m.options.photons_per_pass ||
+        header[3] != static_cast<std::uint64_t>(m.options.width) || header[4] != static_cast<std::uint64_t>(m.options.height) || header[5] != static_cast<std::uint64_t>(m.options.max_events))
         throw std::runtime_error("is of another scene, size, seed or number of bounces");
     std::array<Film, 2> halves{Film(m.mask.size()), Film(m.mask.size())};
-    for (Film& f : halves)
-        for (std::size_t t = 0; t < term_count; ++t) r.get(f.term(t));
-    std::vector<Rgb> squares(m.mask.size());
+    Film squares(m.mask.size());
+    for (Film* f : {&halves[0], &halves[1], &squares})
+        for (std::size_t t = 0; t < term_count; ++t) r.get(f->term(t));
+    std::vector<Rgb> sum_squares(m.mask.size());
     std::vector<std::uint8_t> edges(m.mask.size());
     std::vector<double> learned(2 * m.emission.cell_count());
     Account account;
-    r.get(squares), r.get(edges), r.get(learned), r.get(&account, sizeof account);
+    r.get(sum_squares), r.get(edges), r.get(learned), r.get(&account, sizeof account);
     if (!r.at_end()) throw std::runtime_error("goes on where a picture to go on with would end");
-    m.passes = header[5];
+    m.passes = header[6];
     m.halves = std::move(halves);
     m.squares = std::move(squares);
+    m.sum_squares = std::move(sum_squares);
     m.is_piloted = true;
     m.edges = std::move(edges);
     m.emission.set_learned(learned);

@@ -22,6 +22,7 @@
 
 #include "scenes/scene.hpp"
 #include "tools/picture_file.hpp"
+#include "tools/reference/account.hpp"
 
 namespace nephroid::reference {
 
@@ -29,6 +30,7 @@ struct Options {
     int width = 512, height = 384;
     std::uint64_t seed = 1;
     int max_events = 32;  // reflections and transmissions on one path
+    std::uint32_t photons_per_pass = 1u << 19;  // passes are independent of each other, photons of one are spread evenly
     int threads = 0;      // 0: one per core
 };
 
@@ -47,6 +49,7 @@ public:
     // Throws std::runtime_error, one line: no camera, options out of range, a scene that it cannot do.
     Tracer(const scenes::Scene& scene, const Options& options);
     ~Tracer();
+    Tracer(Tracer&&) noexcept;
 
     // What the scene has that is not in the picture, a sentence each.
     const std::vector<std::string>& notes() const;
@@ -58,8 +61,11 @@ public:
     // R, G, B; mask (1: left out, the outline of something specular that the eye sees first); caustic.R ..., direct.R ...,
     // emission.R ..., scattered.R ... as render --layers names them.
     PictureData picture() const;
-    // Standard errors of R, G, B, from the spread of independent passes: channels R.error, G.error, B.error.
+    // Standard errors, from the spread of independent passes: of the picture, R.error, G.error, B.error; of its terms
+    // too: caustic.R.error ..., direct.R.error ...
     PictureData error() const;
+    // Of one pass's photons, the mean over the passes, W.
+    Account account() const;
 
     // What is left of the noise: the relMSE that `compare` would measure against the truth, estimated from two independent
     // halves of the passes; over all pixels, and over those whose caustic is more than half of them.

@@ -32,6 +32,12 @@ public:
     Rgb color(const Surface& surface, const Hit& hit) const;
     bool has_specular() const { return has_specular_; }
 
+    // Parallel light and the surroundings' are what the scene says on a plane across their direction, the scene's diagonal
+    // before its middle: from there on media dim them. The way from a point to that plane, m.
+    double way_in(const Vec& point, const Vec& towards) const {
+        return glm::max(0.0, glm::length(geometry_.high() - geometry_.low()) - glm::dot(point, towards));
+    }
+
     // What a point in free space lies in, from what rays all round it meet.
     Region region_of(const Vec& point) const;
 

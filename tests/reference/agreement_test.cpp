@@ -72,17 +72,23 @@ void check(const Agreement& a, double sigma = 0.002) {
     REQUIRE(a.pixels > 50);
     // The mean of n squares of a normal variable has a standard deviation of sqrt(2 / n).
     // Where few photons make a pixel it is no normal variable, and the mean larger.
-    const double spread = std::max(sigma > 0.002 ? 0.25 : 0.1, 3 * std::sqrt(2.0 / a.pixels));
+    const double spread = std::max(sigma > 0.002 ? 0.15 : 0.1, 3 * std::sqrt(2.0 / a.pixels));
     CHECK(a.mean_squared_z > 1 - spread);
     CHECK(a.mean_squared_z < 1 + spread);
 }
 
-// Haze, or a cloud of cells, in a room with a ball under a lamp.
+// Haze in a room with a pane under a lamp, or a cloud of cells there round a ball. A photon that is scattered close to the
+// eye counts without bound, and no number of photons then tells the mean's error: a pane sends none that way, and the
+// cloud is away from the eye.
 scenes::Scene room(bool cloud) {
     scenes::Scene scene;
     oracle::add_box(scene, "room", oracle::add_lambert(scene, 0.6), {-2, 0, -2}, {2, 3, 2}, true);
-    const int glass = oracle::add_glass(scene, 1.5);
-    scene.meshes.push_back(scenes::make_sphere("ball", glass, {0.3f, 1.2f, -0.4f}, 0.4f, 4));
+    if (cloud) {
+        const int glass = oracle::add_glass(scene, 1.5);
+        scene.meshes.push_back(scenes::make_sphere("ball", glass, {0.3f, 1.2f, -0.4f}, 0.4f, 4));
+    } else {
+        oracle::add_sheet(scene, "pane", oracle::add_thin_glass(scene, 1.5), {-0.5, 2, -0.9}, {0, 0, 0.6}, {0.6, 0, 0});
+    }
     oracle::add_point(scene, {-0.2, 2.7, -0.6}, 3);
     oracle::set_camera(scene, {0.2, 1.3, 1.9}, {0.1, 1.1, 0}, 0.9);
     scenes::Medium m;
@@ -91,7 +97,7 @@ scenes::Scene room(bool cloud) {
     if (cloud) {
         m.size[0] = 4, m.size[1] = 3, m.size[2] = 2;
         m.low = {-1.4f, 0.2f, -1.5f}, m.high = {1.5f, 2.5f, 0.9f};
-        for (int k = 0; k < 24; ++k) m.density.push_back(static_cast<float>(k * 7 % 11) * 0.4f);
+        for (int k = 0; k < 24; ++k) m.density.push_back(static_cast<float>(k * 7 % 11) * 0.12f);
     }
     scene.media = {m};
     return scene;
@@ -136,13 +142,14 @@ TEST_CASE("light that a medium scatters once is the oracle's, in haze and in a c
         const reference::Tracer tracer = traced(scene, 44, 33, is_patient() ? 30'000'000 : 1'000'000);
         oracle::Options judge = judging(44, 33, is_patient() ? 100'000'000 : 3'000'000);
         judge.scattering = judge.direct = true;
+        judge.near_eye = 2.5;  // few photons, each with a great weight, are what errors are underestimated of
         const oracle::Result truth = oracle::trace(scene, judge);
         const PictureData picture = tracer.picture(), errors = tracer.error();
         const auto agree = [&](const char* what, const Agreement& a) {
             const std::string text(what);
             CAPTURE(text);
             MESSAGE(text, std::string(cloud ? " in a cloud" : " in haze"), ": total ", 100 * a.total, " % (+- ", 100 * a.total_error, ", own ", 100 * a.own_error, "), mean squared z ", a.mean_squared_z, " over ", a.pixels, " pixels");
-            check(a, is_patient() ? 0.002 : 0.01);
+            check(a, is_patient() ? 0.002 : 0.007);
         };
         std::vector<double> scattered, scattered_error;
         for (std::size_t k = 0; k < truth.image.size(); ++k) {

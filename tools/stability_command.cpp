@@ -1,7 +1,10 @@
 // nephroid stability: a method taken through where it fails, and held against accepted ranges.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
-#include <unistd.h>
 
 #include "scenes/load.hpp"
 #include "tools/commands.hpp"
@@ -34,12 +37,21 @@ bool asked_for(const StabilityArguments& a, const std::string& sweep) {
 }
 
 // Before anything is drawn: what is asked for can be had.
-void check(const StabilityArguments& a) {
+void check_outputs(const StabilityArguments& a) {
     if (!a.json.empty()) check_file_path(a.json);
     if (!a.pictures.empty() && !std::filesystem::is_directory(a.pictures)) throw std::runtime_error("--pictures: " + a.pictures + " is not a folder");
-    for (const stability::SweepKind& k : stability::sweep_kinds())
-        if (!a.scenes.empty() && !a.sweeps.empty() && !k.any_scene && asked_for(a, k.name))
-            throw std::runtime_error(std::string("--sweep: ") + k.name + " has scenes of its own and takes no SCENE");
+}
+void check_sweeps(const StabilityArguments& a, const std::vector<scenes::Scene>& scenes) {
+    for (const stability::SweepKind& k : stability::sweep_kinds()) {
+        if (a.sweeps.empty() || !asked_for(a, k.name)) continue;
+        if (!scenes.empty() && !k.any_scene) throw std::runtime_error(std::string("--sweep: ") + k.name + " has scenes of its own and takes no SCENE");
+        for (const scenes::Scene& scene : scenes)
+            if (const std::string reason = stability::why_not(k.name, scene); !reason.empty())
+                throw std::runtime_error(scene.name + ": " + k.name + " has nothing to say of it, " + reason);
+    }
+    // This sweep is of any scene that has caustics.
+    for (const scenes::Scene& scene : scenes)
+        if (const std::string reason = stability::why_not("scale", scene); !reason.empty()) throw std::runtime_error(scene.name + ": no sweep says anything of it, " + reason);
 }
 
 std::string file_name_of(const std::string& text) {
@@ -64,14 +76,16 @@ void write_worst(const StabilityArguments& a, const stability::SweepResult& r) {
 }
 
 void run(StabilityArguments& a) {
-    check(a);
+    check_outputs(a);
     std::vector<scenes::Scene> scenes;
     for (const std::string& name : a.scenes) {
         scenes.push_back(scenes::load_scene(name));
         say_notes(scenes.back().notes);
         scenes.back().name = name;
     }
-    if (a.options.size.empty()) a.options.size = "192x144";
+    check_sweeps(a, scenes);
+    SceneOptions& of_scene = a.options;
+    if (of_scene.size.empty()) of_scene.size = "128x96";
     a.options.finish(scenes.empty() ? scenes::Scene() : scenes.front());
     Device device({.threads = a.options.threads, .lanes = a.options.lanes});
     throw_faults(device.faults());

@@ -248,7 +248,7 @@ Shelf shelf_by_mirror(float height) {
     scene.materials.push_back(silver);
     // All that it reflects comes down on the table.
     scene.meshes.push_back(scenes::make_quad("mirror", static_cast<int>(scene.materials.size()) - 1, {1, 0.1f, -0.4f}, {1, 0.1f, 0.4f}, {1, 0.9f, 0.4f}, {1, 0.9f, -0.4f}));
-    add_point_light(scene, {-1.5f, 1.6f, 0}, 30);
+    add_point_light(scene, {-1.5f, 1.6f, 0}, 8);
     add_camera(scene, {-0.4f, 2.4f, 2.6f}, {-0.3f, 0.1f, 0});
     return shelf;
 }

@@ -32,7 +32,7 @@ struct SweepResult {
 
 struct SweepOptions {
     stages::Settings settings;
-    std::uint64_t truth_photons = 4'000'000;  // of each truth
+    std::uint64_t truth_photons = 2'000'000;  // of each truth
     int threads = 0;
     std::function<void(const std::string&)> say = [](const std::string&) {};  // told of every step
 };

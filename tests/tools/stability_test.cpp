@@ -10,10 +10,12 @@
 #include "scenes/bundled.hpp"
 #include "tests/tools/pictures.hpp"
 #include "tests/tools/program.hpp"
+#include "tools/failure_zones.hpp"
 #include "tools/stability/measures.hpp"
 #include "tools/stability/ranges.hpp"
 #include "tools/stability/scenes.hpp"
 #include "tools/stability/sweeps.hpp"
+#include "tools/world_builder.hpp"
 
 using namespace nephroid;
 using namespace nephroid::stability;
@@ -277,6 +279,45 @@ TEST_CASE("a sweep says of what it cannot judge that it cannot") {
     scenes::Scene dark = ball;
     dark.lights.clear();
     CHECK(why_not("light-path", dark) == "it has no light");
+}
+
+TEST_CASE("notes of failures: for the zones that sweeps measured, and for nothing else") {
+    Device device;
+    const auto notes = [&](const scenes::Scene& scene, const stages::Settings& settings = {}) { return failure_notes(build_world(device, scene).world, settings); };
+    // No bundled scene stands in such a zone.
+    for (const std::string_view name : scenes::bundled_scene_names()) {
+        const std::string text(name);
+        CAPTURE(text);
+        CHECK(notes(scenes::bundled_scene(name)).empty());
+    }
+    // Where the sweep near-light has lost more than it can have by chance.
+    for (const float gap : {1.0f, 0.3f, 0.1f}) CHECK(notes(ball_near_light(gap)).empty());
+    for (const float gap : {0.03f, 0.0f, -0.25f, -0.5f}) {
+        const std::vector<std::string> said = notes(ball_near_light(gap));
+        REQUIRE(said.size() == 1);
+        CHECK(said[0].find("light 'bulb' stands in or close to 'sphere'") == 0);
+    }
+    stages::Settings newton;
+    newton.intersection = stages::Intersection::Newton;
+    CHECK(notes(scenes::bundled_scene("mirror-ring"), newton).size() == 1);
+    CHECK(notes(scenes::bundled_scene("glass-sphere"), newton).empty());
+    stages::Settings few;
+    few.photons = 64;
+    const std::vector<std::string> said = notes(scenes::bundled_scene("glass-sphere"), few);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find("64^2 photons are too few for a caustic map of 1024^2 texels") == 0);
+    few.photons = 128;
+    CHECK(notes(scenes::bundled_scene("glass-sphere"), few).empty());
+    few.photons = 16;
+    CHECK(notes(without_specular(scenes::bundled_scene("glass-sphere")), few).empty());
+}
+
+TEST_CASE("render tells of a zone that it is in, and draws all the same") {
+    const Folder folder;
+    const Outcome o = run_nephroid(folder, {"render", "prism", "--size", "16x12", "--photons", "16^2", "--map-size", "256", "-o", "a.png"});
+    CHECK(o.code == 0);
+    CHECK(o.err == "nephroid: 16^2 photons are too few for a caustic map of 256^2 texels: splats do not reach from one to the next, and the caustic falls into spots\n");
+    CHECK(folder.files() == std::vector<std::string>{"a.png"});
 }
 
 TEST_CASE("stability: what cannot be had is said in one line before anything is drawn") {

@@ -34,6 +34,7 @@ struct ReceiverSearch {
     Intersection method = Intersection::Bisection;
     int iterations = 12;
     int steps = 24;  // Bisection: before halving
+    int detours = 4;  // Bisection: receivers' edges that a ray passes behind, at most
     glm::vec3 low{0.0f}, high{0.0f};  // of the scene
     float reach = 1.0f;  // length that no ray in the scene exceeds
 
@@ -67,9 +68,8 @@ private:
     Hit<F> finish(const vec3<F>& origin, const vec3<F>& direction, F distance) const {
         const vec3<F> position = origin + direction * distance;
         const ReceiverMap::Place<F> p = map.place(position);
-        const F r = map.receiver(p);
-        const F tolerance = (map.cube ? p.nearness : F(1.0f)) * F(4.0f / static_cast<float>(map.size));
-        const LaneMask<F> found = (r > F(0.0f)) & (abs(p.nearness - r) <= tolerance) & (distance > F(0.0f)) & (distance <= F(reach));
+        const F r = map.receiver_with_edges(p);
+        const LaneMask<F> found = (r > F(0.0f)) & (abs(p.nearness - r) <= map.tolerance(p)) & (distance > F(0.0f)) & (distance <= F(reach));
         return {position, distance, found};
     }
 
@@ -110,30 +110,60 @@ private:
             leaves = min(leaves, max((F(low[k]) - origin[k]) * inverse, (F(high[k]) - origin[k]) * inverse));
         }
         leaves = max(leaves, F(0.0f)) * F(1.01f) + F(reach * 1e-3f);
-        F before(0.0f), behind = leaves, value_before(1.0f), value_behind(-1.0f);
-        LaneMask<F> found(false);
+        F before(0.0f), behind = leaves, value_before(1.0f), value_behind(-1.0f), number(static_cast<float>(steps));
+        LaneMask<F> crossed(false);
         for (int i = 1; i <= steps; ++i) {
             const F t = leaves * F(static_cast<float>(i) / static_cast<float>(steps)), value = in_front(origin + direction * t);
-            const LaneMask<F> crossed = (value < F(0.0f)) & !found;
-            behind = select(crossed, t, behind);
-            value_behind = select(crossed, value, value_behind);
-            found = found | crossed;
-            before = select(found, before, t);
-            value_before = select(found, value_before, value);
-            if (all(found | !active)) break;
+            const LaneMask<F> crosses = (value < F(0.0f)) & !crossed;
+            number = select(crosses, F(static_cast<float>(i)), number);
+            behind = select(crosses, t, behind);
+            value_behind = select(crosses, value, value_behind);
+            crossed = crossed | crosses;
+            before = select(crossed, before, t);
+            value_before = select(crossed, value_before, value);
+            if (all(crossed | !active)) break;
         }
-        for (int i = 0; i < iterations; ++i) {
-            const F t = (before + behind) * F(0.5f), value = in_front(origin + direction * t);
-            const LaneMask<F> is_behind = value < F(0.0f);
-            behind = select(is_behind, t, behind);
-            value_behind = select(is_behind, value, value_behind);
-            before = select(is_behind, before, t);
-            value_before = select(is_behind, value_before, value);
+        const auto narrow = [&] {
+            for (int i = 0; i < iterations; ++i) {
+                const F t = (before + behind) * F(0.5f), value = in_front(origin + direction * t);
+                const LaneMask<F> is_behind = value < F(0.0f);
+                behind = select(is_behind, t, behind);
+                value_behind = select(is_behind, value, value_behind);
+                before = select(is_behind, before, t);
+                value_before = select(is_behind, value_before, value);
+            }
+            // The difference of depths is linear enough by now.
+            const F drop = value_before - value_behind;
+            return finish(origin, direction, before + (behind - before) * select(drop > F(0.0f), min(value_before / max(drop, F(1e-30f)), F(1.0f)), F(0.5f)));
+        };
+        Hit<F> hit = narrow();
+        hit.found = hit.found & crossed;
+
+        // Where there was nothing, the ray has passed behind a receiver's edge, as the light sees it. It may come out again.
+        LaneMask<F> hidden = active & crossed & !hit.found;
+        for (int detour = 0; detour < detours && any(hidden); ++detour) {
+            LaneMask<F> walks = hidden & (number < F(static_cast<float>(steps))), out(false);
+            crossed = LaneMask<F>(false);
+            while (any(walks)) {
+                number = select(walks, number + F(1.0f), number);
+                const F t = leaves * (number / F(static_cast<float>(steps))), value = in_front(origin + direction * t);
+                const LaneMask<F> is_behind = value < F(0.0f), crosses = walks & out & is_behind, in_sight = walks & !is_behind;
+                behind = select(crosses, t, behind);
+                value_behind = select(crosses, value, value_behind);
+                before = select(in_sight, t, before);
+                value_before = select(in_sight, value, value_before);
+                out = out | in_sight;
+                crossed = crossed | crosses;
+                walks = walks & !crosses & (number < F(static_cast<float>(steps)));
+            }
+            if (none(crossed)) break;
+            const Hit<F> next = narrow();
+            const LaneMask<F> lands = crossed & next.found;
+            hit.position = select(lands, next.position, hit.position);
+            hit.distance = select(lands, next.distance, hit.distance);
+            hit.found = hit.found | lands;
+            hidden = crossed & !next.found;
         }
-        // The difference of depths is linear enough by now.
-        const F drop = value_before - value_behind;
-        Hit<F> hit = finish(origin, direction, before + (behind - before) * select(drop > F(0.0f), min(value_before / max(drop, F(1e-30f)), F(1.0f)), F(0.5f)));
-        hit.found = hit.found & found;
         return hit;
     }
 };

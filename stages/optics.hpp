@@ -31,10 +31,12 @@ inline Refraction<F> refract(const vec3<F>& d, const vec3<F>& n, F eta) {
     return r;
 }
 
-// Fresnel's reflectance for unpolarised light, from the two cosines and eta = n_from / n_to.
+// Fresnel's reflectance for unpolarised light, from the two cosines and eta = n_from / n_to. Both cosines are 0 only where
+// light grazes a surface between equal media, which reflects nothing.
 template <class F>
 inline F fresnel(F cos_from, F cos_to, F eta) {
-    const F s = (eta * cos_from - cos_to) / (eta * cos_from + cos_to), p = (cos_from - eta * cos_to) / (cos_from + eta * cos_to);
+    const F least(1e-20f);
+    const F s = (eta * cos_from - cos_to) / max(eta * cos_from + cos_to, least), p = (cos_from - eta * cos_to) / max(cos_from + eta * cos_to, least);
     return F(0.5f) * (s * s + p * p);
 }
 template <class F>

@@ -47,6 +47,32 @@ struct ReceiverMap {
         return select((a > F(0.0f)) & (b > F(0.0f)) & (c > F(0.0f)) & (d > F(0.0f)), smooth, nearest);
     }
 
+    // The same, but read from the nearest texel alone where the surface does not go on between the four: interpolated, the
+    // edge of something would have a wall down to what is behind it. There, one step from texel to texel is far larger than
+    // those before and after it; on a plane all are equal.
+    template <class F>
+    F receiver_with_edges(const Place<F>& p) const {
+        const F side(static_cast<float>(size)), most(static_cast<float>(size - 2));
+        const F x = p.u * side - F(0.5f), y = p.v * side - F(0.5f), fx = min(max(floor(x), F(0.0f)), most), fy = min(max(floor(y), F(0.0f)), most);
+        const LaneInt<F> x0 = to_int(fx), y0 = to_int(fy);
+        const auto texel = [&](int i, int j) { return depth.fetch<F>(x0 + LaneInt<F>(i), y0 + LaneInt<F>(j), p.layer).x; };
+        const F a = texel(0, 0), b = texel(1, 0), c = texel(0, 1), d = texel(1, 1), allowed = tolerance(p);
+        const auto jumps = [&](F before, F first, F second, F after) {
+            const F step = abs(second - first);
+            // Where there is no texel before or after, nothing is known of it.
+            const F other = max(select(before > F(0.0f), abs(first - before), step), select(after > F(0.0f), abs(after - second), step));
+            return step > F(2.0f) * other + allowed;
+        };
+        const LaneMask<F> edge = jumps(texel(-1, 0), a, b, texel(2, 0)) | jumps(texel(-1, 1), c, d, texel(2, 1)) | jumps(texel(0, -1), a, c, texel(0, 2)) | jumps(texel(1, -1), b, d, texel(1, 2));
+        const F wx = x - fx, wy = y - fy, nearest = select(wy < F(0.5f), select(wx < F(0.5f), a, b), select(wx < F(0.5f), c, d));
+        return select(edge, nearest, receiver(p));
+    }
+    // How far a place's nearness may be from the receiver's to count as on it: what the texels can tell.
+    template <class F>
+    F tolerance(const Place<F>& p) const {
+        return (cube ? p.nearness : F(1.0f)) * F(4.0f / static_cast<float>(size));
+    }
+
     // The point where the light's ray through `position` meets a receiver of nearness r > 0.
     template <class F>
     vec3<F> on_receiver(const vec3<F>& position, const Place<F>& p, F r) const {

@@ -306,13 +306,12 @@ View Renderer::Impl::caster_view(const Light& light, const Mesh& mesh) const {
     const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
     View v = light.kind == LightKind::Directional ? parallel_view(light) : light.kind == LightKind::Spot ? make_view(light.position, light.direction) : look_at(light.position, centre);
     float left = 1e30f, right = -1e30f, bottom = 1e30f, top = -1e30f;
-    constexpr float widest = 4.0f;  // tangent
     for (int k = 0; k < 8; ++k) {
         const glm::vec3 d = glm::vec3(k & 1 ? mesh.high.x : mesh.low.x, k & 2 ? mesh.high.y : mesh.low.y, k & 4 ? mesh.high.z : mesh.low.z) - v.origin;
         const float z = glm::dot(d, v.forward);
         float x = glm::dot(d, v.right), y = glm::dot(d, v.up);
         if (v.perspective) {
-            const float least = std::max(std::max(std::abs(x), std::abs(y)) / widest, 1e-20f);
+            const float least = std::max(std::max(std::abs(x), std::abs(y)) / widest_caster_view, 1e-20f);
             x /= std::max(z, least);
             y /= std::max(z, least);
         }

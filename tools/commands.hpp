@@ -16,5 +16,6 @@ void add_plan_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_reference_command(CLI::App& app);
+void add_stability_command(CLI::App& app);
 
 }  // namespace nephroid

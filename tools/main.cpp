@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
     nephroid::add_reference_command(app);
     nephroid::add_compare_command(app);
     nephroid::add_bench_command(app);
+    nephroid::add_stability_command(app);
     const int code = run(app, argc, argv);
     // A hash or a report that nobody got is no success.
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;

@@ -6,6 +6,7 @@
 #include "pipeline/math.hpp"
 #include "tools/commands.hpp"
 #include "tools/debug_pixel.hpp"
+#include "tools/failure_zones.hpp"
 #include "tools/frame_statistics.hpp"
 #include "tools/number_range.hpp"
 #include "tools/picture_file.hpp"
@@ -107,6 +108,7 @@ void run(RenderArguments& a) {
     say_notes(scene.notes);
     BuiltWorld built = build_world(device, scene);
     say_notes(built.notes);
+    say_notes(failure_notes(built.world, a.options.settings));
     const std::vector<stages::Light> lights = built.world.lights;
     const stages::Camera camera = built.world.camera;
     times.load_ms = now_ms() - load_start;

@@ -53,15 +53,24 @@ stages::Material build_material(const scenes::Material& m, std::vector<std::stri
     return r;
 }
 
-// A mesh is closed if hardly an edge has only one triangle; corners at one place are one corner.
-bool is_closed(const scenes::Mesh& mesh) {
+// Flat but for rounding: it has no two sides.
+bool has_area(const scenes::Mesh& mesh, std::size_t triangle) {
+    const glm::vec3 a = mesh.positions[mesh.indices[triangle]], u = mesh.positions[mesh.indices[triangle + 1]] - a, v = mesh.positions[mesh.indices[triangle + 2]] - a;
+    const float longest = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(u - v, u - v)});
+    constexpr float least = 1e-5f;
+    return glm::length(glm::cross(u, v)) > least * longest;
+}
+
+// A mesh is closed if hardly an edge has only one triangle; corners at one place are one corner. Triangles without area close
+// the gaps between others, or lie about with edges of their own: they count in one of two ways.
+bool is_closed(const scenes::Mesh& mesh, bool with_flat) {
     using Place = std::tuple<float, float, float>;
     std::map<Place, std::uint32_t> places;
     std::vector<std::uint32_t> place_of;
     for (const glm::vec3& p : mesh.positions) place_of.push_back(places.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(places.size())).first->second);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < 3 && (with_flat || has_area(mesh, t)); ++k) {
             const std::uint32_t a = place_of[mesh.indices[t + k]], b = place_of[mesh.indices[t + (k + 1) % 3]];
             if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b));
         }
@@ -82,7 +91,7 @@ stages::Mesh build_mesh(const scenes::Mesh& m, const scenes::Scene& scene, const
     stages::Mesh r;
     r.name = m.name;
     r.material = m.material;
-    r.closed = is_closed(m);
+    r.closed = is_closed(m, true) || is_closed(m, false);
     r.low = glm::vec3(std::numeric_limits<float>::infinity());
     r.high = -r.low;
     std::vector<stages::WorldVertex<float>> vertices;

@@ -1,0 +1,56 @@
+#include "tools/failure_zones.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+
+#include "stages/mapping/splat_pass.hpp"
+#include "stages/renderer.hpp"
+#include "stages/view.hpp"
+
+namespace nephroid {
+
+namespace {
+
+using stages::SurfaceKind;
+
+// A light sees an object in one picture: what lies beside or behind the light is not in it.
+bool fits_one_picture(const stages::Light& light, const stages::Mesh& mesh) {
+    if (light.kind == stages::LightKind::Directional) return true;
+    const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
+    if (glm::all(glm::lessThan(glm::abs(light.position - centre), (mesh.high - mesh.low) * 0.5f))) return false;
+    // A spot's cone is narrower than a picture can be.
+    if (light.kind == stages::LightKind::Spot) return true;
+    const stages::View view = stages::look_at(light.position, centre);
+    return std::all_of(mesh.vertices.data(), mesh.vertices.data() + mesh.vertices.size(), [&](const stages::WorldVertex<float>& vertex) {
+        const glm::vec3 d = vertex.position - light.position;
+        return std::max(std::abs(glm::dot(d, view.right)), std::abs(glm::dot(d, view.up))) <= glm::dot(d, view.forward) * stages::widest_caster_view;
+    });
+}
+
+}  // namespace
+
+std::vector<std::string> failure_notes(const stages::World& world, const stages::Settings& settings) {
+    std::vector<std::string> notes;
+    bool mirrors = false, casters = false;
+    for (const stages::Mesh& mesh : world.meshes) {
+        const SurfaceKind kind = world.material_of(mesh).kind;
+        if (kind == SurfaceKind::Lambert) continue;
+        casters = true;
+        mirrors = mirrors || kind == SurfaceKind::Mirror;
+        for (const stages::Light& light : world.lights)
+            if (!fits_one_picture(light, mesh))
+                notes.push_back("light '" + light.name + "' stands in or close to '" + mesh.name + "', too close to see all of it in one picture: what it does not see has no caustic");
+    }
+    if (!casters || world.lights.empty()) return notes;
+    if (mirrors && settings.intersection != stages::Intersection::Bisection)
+        notes.push_back("Newton's and the secant intersection diverge for light that mirrors turn back, and lose it: bisection does not");
+    const float spacing = static_cast<float>(settings.map_size) / static_cast<float>(settings.photons);
+    constexpr float reach = stages::mapping::PlacePhoton::widest / stages::mapping::PlacePhoton::overlap;
+    if (settings.sprite_size == 0 && spacing > reach)
+        notes.push_back(std::to_string(settings.photons) + "^2 photons are too few for a caustic map of " + std::to_string(settings.map_size) +
+                        "^2 texels: splats do not reach from one to the next, and the caustic falls into spots");
+    return notes;
+}
+
+}  // namespace nephroid

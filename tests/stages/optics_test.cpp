@@ -78,6 +78,9 @@ TEST_CASE("Fresnel's reflectance agrees with its closed form, and is symmetric")
         CHECK(std::abs(reflectance - truth) < 5e-5);
     }
     CHECK(fresnel(1.0f, 1.0f, 1.0f / 1.5f) == doctest::Approx(0.04).epsilon(1e-6).scale(0));
+    // Between equal media nothing is reflected, not even along the surface, where both cosines are 0.
+    for (const float cosine : {1.0f, 0.5f, 1e-6f, 0.0f}) CHECK(fresnel(cosine, cosine, 1.0f) == 0.0f);
+    CHECK(fresnel(0.0f, 0.745f, 1.0f / 1.5f) == 1.0f);
     CHECK(thin_plate_transmittance(0.04f) == doctest::Approx(0.96 / 1.04).epsilon(1e-6).scale(0));
 }
 

@@ -271,6 +271,52 @@ TEST_CASE("degenerate triangles: slivers are long and thin, flat ones have no ar
     CHECK(none == 2 * areas(scenes::bundled_scene("glass-sphere")).size());
 }
 
+TEST_CASE("triangles without area neither open a mesh nor close one") {
+    Device device;
+    const auto closed = [&](const scenes::Scene& scene, std::size_t mesh) { return build_world(device, scene).world.meshes[mesh].closed; };
+    CHECK(closed(scenes::bundled_scene("glass-sphere"), 1));
+    CHECK(closed(ball_with_flat_triangles(), 1));
+    CHECK(closed(sliver_ball(), 1));
+    scenes::Scene sheet = scenes::bundled_scene("glass-sphere");
+    CHECK(!closed(sheet, 0));
+    std::vector<std::uint32_t>& table = sheet.meshes[0].indices;
+    for (int k = 0; k < 20; ++k) table.insert(table.end(), {0, 0, 0, 0, 1, 1});
+    CHECK(!closed(sheet, 0));
+    // A gap between two triangles and one, closed by a triangle without area, is none.
+    scenes::Scene ball = scenes::bundled_scene("glass-sphere");
+    scenes::Mesh& m = ball.meshes[1];
+    for (std::size_t t = 0; t < 3 * 2000; t += 3) {
+        const std::uint32_t a = m.indices[t], b = m.indices[t + 1], c = m.indices[t + 2], between = static_cast<std::uint32_t>(m.positions.size());
+        m.positions.push_back((m.positions[a] + m.positions[b]) * 0.5f);
+        m.normals.push_back(m.normals[a]);
+        if (!m.texcoords.empty()) m.texcoords.push_back(m.texcoords[a]);
+        m.indices[t + 1] = between;
+        m.indices.insert(m.indices.end(), {between, b, c, a, b, between});
+    }
+    CHECK(closed(ball, 1));
+}
+
+TEST_CASE("mirrored light lands on receivers, not on the air between one's edge and the next") {
+    Device device;
+    SweepOptions options;
+    options.settings.width = 64;
+    options.settings.height = 48;
+    options.settings.photons = 256;
+    options.settings.map_size = 256;
+    options.truth_photons = 1000;
+    const SweepResult r = run_sweep(device, "depth-steps", nullptr, options);
+    int judged = 0;
+    for (const StepResult& step : r.steps)
+        for (const Figure& f : step.figures) {
+            if (!step.step.starts_with("bisection") || f.quantity != "off target") continue;
+            CAPTURE(step.step);
+            // 63 % of it did, where depths are interpolated over edges.
+            CHECK(f.value < 0.05);
+            ++judged;
+        }
+    CHECK(judged == 4);
+}
+
 TEST_CASE("a sweep says of what it cannot judge that it cannot") {
     const scenes::Scene ball = scenes::bundled_scene("glass-sphere");
     CHECK(why_not("ior", ball) == "");

@@ -12,7 +12,9 @@
 #include "tools/chart/chart_page.hpp"
 #include "tools/chart/cost.hpp"
 #include "tools/chart/drawing.hpp"
+#include "tools/chart/error_model.hpp"
 #include "tools/chart/gnuplot.hpp"
+#include "tools/chart/model_views.hpp"
 #include "tools/chart/sweep.hpp"
 #include "tools/chart/truth.hpp"
 #include "tools/commands.hpp"
@@ -29,7 +31,7 @@ namespace {
 
 struct ChartArguments {
     std::vector<std::string> scenes;
-    std::string out, from, settings = "default", against = "both", size = "512x384";
+    std::string out, from, model, settings = "default", against = "both", size = "512x384";
     chart::TruthOptions truth;
     int runs = 3, threads = 0, lanes = 0;
     bool fit_cost = false;
@@ -130,14 +132,55 @@ std::vector<chart::Measurement> measurements_in(const std::string& path) {
     return chart::from_csv(std::string{std::istreambuf_iterator<char>(file), {}}, path);
 }
 
+// The model's data: what a probe tells of every view, and what the ladder's settings then took, and missed.
+void make_model(const ChartArguments& a) {
+    check_file_path(a.model);
+    Device device({.threads = a.threads, .lanes = a.lanes});
+    throw_faults(device.faults());
+    Executor executor(a.threads);
+    Progress progress;
+    std::vector<chart::ModelRow> rows;
+    for (const chart::ModelView& view : chart::model_views()) {
+        progress.show(static_cast<double>(rows.size()) / static_cast<double>(chart::model_views().size()), view.name);
+        const scenes::Scene scene = chart::scene_of(view);
+        SceneRenderer renderer(device, scene);
+        std::vector<RenderOptions> steps;
+        for (const std::string& options : chart::ladder()) steps.push_back(chart::options_of({"", options}, a.size));
+        const stages::Settings& size = steps.front().settings;
+        const chart::Truth truth = chart::truth_of(view.name, scene, size.width, size.height, a.truth, {});
+        const chart::Probe probe = chart::probe(device, renderer.world(), scene, size.width, size.height);
+        chart::ModelRow row{view.scene, view.name, probe.change, probe.caustic_share, probe.facets, probe.crossing, probe.medium, probe.dispersion, probe.cost, {}, {}, {}};
+        for (const RenderOptions& step : steps) {
+            const SceneRendering r = renderer.render(step.settings);
+            const double error = chart::difference_from(truth, r.picture, executor).relmse, noise = std::isnan(truth.noise) ? 0 : truth.noise;
+            row.errors.push_back(std::max(error - noise, 0.0));
+            row.costs.push_back(chart::cost_of(chart::amounts_of(r.passes, step.settings)));
+            row.expected_costs.push_back(chart::expected_cost(probe, step.settings));
+        }
+        std::printf("%-22s change %-8.3g caustic %-6.3g facets %-6.2g%s%s%s noise %.1g: relMSE", view.name.c_str(), row.change, row.caustic_share, row.facets, row.crossing ? " crossing" : "", row.medium ? " medium" : "",
+                    row.dispersion ? " dispersion" : "", truth.noise);
+        for (const double e : row.errors) std::printf(" %.3g", e);
+        std::printf("; cost");
+        for (std::size_t k = 0; k < steps.size(); ++k) std::printf(" %.0f (%.0f)", row.costs[k], row.expected_costs[k]);
+        std::printf("\n");
+        std::fflush(stdout);
+        rows.push_back(row);
+    }
+    progress.clear();
+    std::printf("each scene by the model of all others:\n%s", chart::left_out_figures(rows).c_str());
+    write_whole_file(a.model, chart::to_csv(rows));
+}
+
 void run(ChartArguments& a) {
+    if (!a.truth.folder.empty() && !std::filesystem::is_directory(a.truth.folder)) throw std::runtime_error(a.truth.folder + ": the folder does not exist");
+    if (!a.model.empty()) return make_model(a);
+    if (a.out.empty()) throw std::runtime_error("--output is required (see nephroid chart --help)");
     // Before anything is measured: all that is asked for is there, and can be written.
     const Outputs outputs = outputs_of(a);
     for (const std::string* path : {&outputs.page, &outputs.svg, &outputs.csv})
         if (!path->empty()) check_file_path(*path);
     if (!outputs.svg.empty()) chart::check_gnuplot();
     if (!a.from.empty()) return write_whole_file(a.out, chart::draw(measurements_in(a.from), prices_of(a.against)).svg);
-    if (!a.truth.folder.empty() && !std::filesystem::is_directory(a.truth.folder)) throw std::runtime_error(a.truth.folder + ": the folder does not exist");
     const std::vector<chart::Setting> settings = chart::sweep(a.settings);
     if (a.scenes.empty())
         for (const std::string_view name : scenes::bundled_scene_names()) a.scenes.emplace_back(name);
@@ -169,7 +212,7 @@ void add_chart_command(CLI::App& app) {
     const auto a = std::make_shared<ChartArguments>();
     CLI::App* c = app.add_subcommand("chart", "Draw scenes with methods over their settings: error against time, and against a cost that is the same on every machine");
     c->add_option("scenes", a->scenes, "glTF or GLB files, or bundled scenes (default: all of these)")->type_name("SCENE");
-    c->add_option("-o,--output", a->out, "The chart: .html, a page with each point's picture, and .svg and .csv beside it; or only one of these")->required()->type_name("FILE");
+    c->add_option("-o,--output", a->out, "The chart: .html, a page with each point's picture, and .svg and .csv beside it; or only one of these")->type_name("FILE");
     c->add_option("--settings", a->settings, "quick, default, full, or a file with a line of render's options for each setting")->capture_default_str();
     c->add_option("--against", a->against, "What errors are drawn against")->check(CLI::IsMember({"time", "cost", "both"}))->capture_default_str();
     c->add_option("--size", a->size, "Of the pictures, WIDTHxHEIGHT")->capture_default_str();
@@ -180,6 +223,7 @@ void add_chart_command(CLI::App& app) {
     c->add_option("--reference-noise", a->truth.noise, "A truth is good enough when it is off by this, relMSE")->check(number_in(0, 1e6))->capture_default_str();
     c->add_option("--reference-seconds", a->truth.seconds, "or after so long; 0: however long it takes")->check(number_in(0, 1e6))->capture_default_str();
     CLI::Option* from = c->add_option("--from", a->from, "Measure nothing: draw a chart's .csv again, as .svg")->type_name("FILE");
+    c->add_option("--model", a->model, "Draw no chart: measure what render's --technique auto chooses by, and write it; with --size 256x192, tools/chart/model.csv")->type_name("FILE")->excludes(from);
     c->add_flag("--fit-cost", a->fit_cost, "Print the weights that would make the cost fit these times")->excludes(from);
     c->callback([a] { run(*a); });
 }

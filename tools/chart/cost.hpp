@@ -1,7 +1,7 @@
 // A price that is the same on every machine: a weighted sum of the pipeline's statistics.
 //
-// The weights are nanoseconds of two threads of one machine, fitted once, by `nephroid chart --fit-cost`, to the times of the passes of
-// the bundled scenes; what the sum is on another machine is not its time there, but is as good a measure of the work.
+// The weights are nanoseconds of one thread, 16 lanes wide, of one machine, fitted once, by `nephroid chart --fit-cost --threads 1`, to
+// the times of the passes of the bundled scenes. On another machine the sum is not the time, but as good a measure of the work.
 #pragma once
 #include <array>
 #include <string>

@@ -11,52 +11,57 @@ namespace {
 
 enum Level { Quick, Default, Full };
 
-// From cheap to dear; each level has those before it as well. A caustic map has about as many texels as there are photons.
+// Each level has those before it as well.
 struct Entry {
     Level level;
     const char *series, *options;
 };
 constexpr Entry entries[] = {
-    // The number of photons.
-    {Full, "two-sided", "--variant two-sided --photons 16^2 --map-size 32"},
-    {Full, "two-sided", "--variant two-sided --photons 32^2 --map-size 64"},
-    {Quick, "two-sided", "--variant two-sided --photons 64^2 --map-size 64"},
-    {Default, "two-sided", "--variant two-sided --photons 128^2 --map-size 128"},
-    {Quick, "two-sided", "--variant two-sided --photons 256^2 --map-size 256"},
-    {Default, "two-sided", "--variant two-sided --photons 512^2 --map-size 512"},
-    {Default, "two-sided", "--variant two-sided --photons 1024^2 --map-size 1024"},
-    {Full, "two-sided", "--variant two-sided --photons 2048^2 --map-size 2048"},
-    {Full, "two-sided", "--variant two-sided --photons 4096^2 --map-size 4096"},
+    // The number of photons; a caustic map with two texels to a photon's spacing loses little of what they show.
+    {Default, "two-sided", "--photons 16^2 --map-size 32"},
+    {Default, "two-sided", "--photons 32^2 --map-size 64"},
+    {Quick, "two-sided", "--photons 64^2 --map-size 128"},
+    {Default, "two-sided", "--photons 128^2 --map-size 256"},
+    {Quick, "two-sided", "--photons 256^2 --map-size 512"},
+    {Default, "two-sided", "--photons 512^2 --map-size 1024"},
+    {Default, "two-sided", "--photons 1024^2 --map-size 1024"},
+    {Full, "two-sided", "--photons 1024^2 --map-size 2048"},
+    {Full, "two-sided", "--photons 2048^2 --map-size 2048"},
+    {Full, "two-sided", "--photons 4096^2 --map-size 4096"},
     // Other map sizes.
-    {Default, "two-sided", "--variant two-sided --photons 256^2 --map-size 128"},
-    {Default, "two-sided", "--variant two-sided --photons 256^2 --map-size 512"},
-    {Full, "two-sided", "--variant two-sided --photons 512^2 --map-size 256"},
-    {Full, "two-sided", "--variant two-sided --photons 512^2 --map-size 1024"},
-    // Samples of a pixel.
-    {Default, "4 samples", "--variant two-sided --photons 64^2 --map-size 64 --samples 4"},
-    {Default, "4 samples", "--variant two-sided --photons 256^2 --map-size 256 --samples 4"},
-    {Full, "4 samples", "--variant two-sided --photons 512^2 --map-size 512 --samples 4"},
-    {Full, "4 samples", "--variant two-sided --photons 1024^2 --map-size 1024 --samples 4"},
+    {Full, "two-sided", "--photons 64^2 --map-size 64"},
+    {Full, "two-sided", "--photons 64^2 --map-size 256"},
+    {Full, "two-sided", "--photons 256^2 --map-size 256"},
+    {Full, "two-sided", "--photons 256^2 --map-size 1024"},
     // Less of an object.
-    {Default, "no inner reflections", "--variant two-sided --photons 64^2 --map-size 64 --no-inner-reflections"},
-    {Default, "no inner reflections", "--variant two-sided --photons 256^2 --map-size 256 --no-inner-reflections"},
-    {Full, "no inner reflections", "--variant two-sided --photons 1024^2 --map-size 1024 --no-inner-reflections"},
-    {Full, "one depth layer", "--variant two-sided --photons 64^2 --map-size 64 --depth-layers 1"},
-    {Default, "one depth layer", "--variant two-sided --photons 256^2 --map-size 256 --depth-layers 1"},
-    {Full, "two bounces", "--variant two-sided --photons 256^2 --map-size 256 --bounces 2"},
+    {Full, "no inner reflections", "--photons 16^2 --map-size 32 --no-inner-reflections"},
+    {Full, "no inner reflections", "--photons 32^2 --map-size 64 --no-inner-reflections"},
+    {Default, "no inner reflections", "--photons 64^2 --map-size 128 --no-inner-reflections"},
+    {Default, "no inner reflections", "--photons 128^2 --map-size 256 --no-inner-reflections"},
+    {Default, "no inner reflections", "--photons 256^2 --map-size 512 --no-inner-reflections"},
+    {Default, "no inner reflections", "--photons 512^2 --map-size 1024 --no-inner-reflections"},
+    {Full, "no inner reflections", "--photons 1024^2 --map-size 1024 --no-inner-reflections"},
+    {Full, "no inner reflections", "--photons 2048^2 --map-size 2048 --no-inner-reflections"},
+    {Default, "one depth layer", "--photons 256^2 --map-size 512 --depth-layers 1"},
+    {Full, "two bounces", "--photons 256^2 --map-size 512 --bounces 2"},
     // How a ray is met with what a light sees.
-    {Full, "Newton, secants", "--variant two-sided --photons 256^2 --map-size 256 --intersection newton --iterations 1"},
-    {Default, "Newton, secants", "--variant two-sided --photons 256^2 --map-size 256 --intersection newton --iterations 4"},
-    {Default, "Newton, secants", "--variant two-sided --photons 256^2 --map-size 256 --intersection secant --iterations 4"},
-    {Full, "two-sided", "--variant two-sided --photons 256^2 --map-size 256 --iterations 4"},
-    {Full, "two-sided", "--variant two-sided --photons 256^2 --map-size 256 --iterations 24"},
+    {Default, "Newton, secants", "--photons 256^2 --map-size 512 --intersection newton --iterations 4"},
+    {Default, "Newton, secants", "--photons 256^2 --map-size 512 --intersection secant --iterations 4"},
+    {Full, "Newton, secants", "--photons 256^2 --map-size 512 --intersection newton --iterations 1"},
+    {Full, "bisection", "--photons 256^2 --map-size 512 --iterations 3"},
+    {Full, "bisection", "--photons 256^2 --map-size 512 --iterations 6"},
+    {Full, "bisection", "--photons 256^2 --map-size 512 --iterations 24"},
+    // Samples of a pixel.
+    {Default, "4 samples", "--photons 256^2 --map-size 512 --samples 4"},
+    {Full, "4 samples", "--photons 64^2 --map-size 128 --samples 4"},
+    {Full, "4 samples", "--photons 1024^2 --map-size 1024 --samples 4"},
     // The tutorial.
-    {Quick, "tutorial", "--variant tutorial --photons 64^2 --map-size 64"},
-    {Default, "tutorial", "--variant tutorial --photons 256^2 --map-size 256"},
+    {Quick, "tutorial", "--variant tutorial --photons 64^2 --map-size 128"},
+    {Default, "tutorial", "--variant tutorial --photons 256^2 --map-size 512"},
     {Full, "tutorial", "--variant tutorial --photons 1024^2 --map-size 1024"},
     // The object's own vertices: as many photons as there are vertices, whatever the number.
-    {Quick, "vertices", "--variant vertices --photons 256^2 --map-size 128"},
-    {Full, "vertices", "--variant vertices --photons 256^2 --map-size 256"},
+    {Quick, "vertices", "--variant vertices --photons 256^2 --map-size 256"},
+    {Full, "vertices", "--variant vertices --photons 512^2 --map-size 1024"},
 };
 
 // What belongs to the whole chart.

@@ -12,7 +12,7 @@ namespace nephroid::chart {
 struct TruthOptions {
     std::string folder;     // empty: truths are not kept
     double noise = 1e-3;    // relMSE that they may be off by; whichever is reached first:
-    double seconds = 30;    // for each scene; 0: no limit
+    double seconds = 45;    // for each scene; 0: no limit
     int threads = 0;
 };
 

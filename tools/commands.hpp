@@ -14,6 +14,7 @@ public:
 void add_render_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
+void add_chart_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_reference_command(CLI::App& app);
 void add_stability_command(CLI::App& app);

@@ -1,41 +1,15 @@
 #include "tools/comparison_page.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "tools/markup.hpp"
-#include "tools/percentile.hpp"
+#include "tools/page_picture.hpp"
 #include "tools/printf_text.hpp"
 
 namespace nephroid {
 
 namespace {
 
-std::string base64(const std::vector<unsigned char>& bytes) {
-    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-        unsigned three = 0;
-        for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (k < left ? bytes[i + k] : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= left ? digits[three >> (18 - 6 * k) & 63u] : '=';
-    }
-    return text;
-}
-
-// Stops that bring the 99th percentile of the reference's values to 1; none where nothing is brighter.
-float exposure_for_eyes(const PictureData& reference, const PixelMask& mask) {
-    if (reference.display_referred) return 0;
-    std::vector<float> values;
-    for (std::size_t v = 0; v < reference.values.size(); ++v)
-        if (!mask[v / reference.channels.size()]) values.push_back(reference.values[v]);
-    const float bright = percentile_99_of(values);
-    return bright > 1 ? -std::log2(bright) : 0.0f;
-}
-
-std::string image(const char* name, const std::vector<unsigned char>& png, const PictureData& picture) {
-    return printf_text("<img id=\"%s\" alt=\"%s\" width=\"%d\" height=\"%d\" src=\"data:image/png;base64,", name, name, picture.width, picture.height) + base64(png) + "\">\n";
+std::string image(const char* name, const PictureData& picture, float exposure) {
+    return printf_text("<img id=\"%s\" alt=\"%s\" width=\"%d\" height=\"%d\" src=\"", name, name, picture.width, picture.height) + png_address(picture, exposure) + "\">\n";
 }
 
 constexpr const char* style = R"(
@@ -100,8 +74,8 @@ std::string comparison_page(const CompareOptions& options, const Comparison& c) 
             "<button data-view=\"heat\">heat map</button> " +
             escaped(options.test) + " left, " + escaped(options.reference) + " right" + (exposure != 0 ? printf_text(", darker by %.1f stops", static_cast<double>(-exposure)) : "") +
             "; heat: FLIP, black 0 to white 1</p>\n";
-    html += "<div id=\"stage\">\n" + image("test", png_file(p.test, exposure), p.test) + image("reference", png_file(p.reference, exposure), p.reference) +
-            image("heat", png_file(heat_picture(p.test.width, p.test.height, c.flip.errors)), p.test) + "</div>\n";
+    html += "<div id=\"stage\">\n" + image("test", p.test, exposure) + image("reference", p.reference, exposure) +
+            image("heat", heat_picture(p.test.width, p.test.height, c.flip.errors), 0) + "</div>\n";
     html += "<input id=\"split\" type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"how much of the picture is shown\">\n<table>\n<tr><th></th>";
     for (const Region& r : c.regions) html += "<th>" + escaped(r.name) + "</th>";
     html += "</tr>\n";

@@ -58,6 +58,7 @@ std::string statistics_json(const RenderOptions& o, const Device& device, const 
                    {"depth_layers", o.settings.solid_layers}, {"size", {o.settings.width, o.settings.height}}, {"samples", o.settings.samples_side * o.settings.samples_side}}},
                  {"device", {{"isa", name_of(device.isa())}, {"lanes", lane_count(device.isa())}, {"threads", device.threads()}}},
                  {"load_ms", times.load_ms},
+                 {"probe_ms", times.probe_ms},
                  {"render_ms", median(times.render_ms)},
                  {"render_runs_ms", times.render_ms},
                  {"write_ms", times.write_ms},

@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
     nephroid::add_plan_command(app);
     nephroid::add_reference_command(app);
     nephroid::add_compare_command(app);
+    nephroid::add_chart_command(app);
     nephroid::add_bench_command(app);
     nephroid::add_stability_command(app);
     const int code = run(app, argc, argv);

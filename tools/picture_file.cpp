@@ -175,6 +175,8 @@ PictureData read_picture(const std::string& path) {
     // Of a TIFF that ends too soon read_image says that it was read, and leaves the error.
     if (!in->read_image(0, 0, 0, spec.nchannels, curved_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, to) || in->has_error())
         throw std::runtime_error(path + ": cannot be read to its end: " + reason(in->geterror()));
+    for (const OIIO::ParamValue& a : spec.extra_attribs)
+        if (a.name().string().starts_with("nephroid:")) p.metadata.emplace_back(a.name().string(), a.get_string());
     if (!p.display_referred) return p;
     for (std::size_t i = 0; i < p.values.size(); ++i) {
         const bool alpha = static_cast<int>(i % spec.nchannels) == spec.alpha_channel;

@@ -13,7 +13,7 @@ struct PictureData {
     std::vector<std::string> channels;  // names
     std::vector<float> values;
     bool display_referred = false;  // the file has integers on the sRGB curve: nothing is brighter than 1
-    std::vector<std::pair<std::string, std::string>> metadata = {};  // to be written into the file's header; not read
+    std::vector<std::pair<std::string, std::string>> metadata = {};  // in the file's header; of what is read, what begins with "nephroid:"
 
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
     // Of a channel's name; -1: there is none.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "pipeline/math.hpp"
+#include "tools/chart/auto_settings.hpp"
 #include "tools/commands.hpp"
 #include "tools/debug_pixel.hpp"
 #include "tools/failure_zones.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 struct RenderArguments {
     RenderOptions options;
+    chart::AutoRequest request;
     std::string out, stats, frames, debug_pixel;
     float orbit_light = 0, orbit_camera = 0, exposure = 0;
     int runs = 1;
@@ -80,6 +82,15 @@ glm::ivec2 parse_pixel(const std::string& text) {
     return pixel;
 }
 
+// What --technique auto picks is not given as well.
+void check_request(const RenderArguments& a, const CLI::App& command) {
+    if (a.request.error == 0 && a.request.budget == 0) return;
+    const char* asked = a.request.error > 0 ? "--error" : "--budget";
+    if (a.options.technique != "auto") throw std::runtime_error(std::string(asked) + ": needs --technique auto");
+    for (const char* picked : {"--variant", "--tracing", "--intersection", "--iterations", "--photons", "--map-size", "--splat-size", "--bounces", "--inner-reflections", "--depth-layers"})
+        if (command.count(picked)) throw std::runtime_error(std::string(asked) + ": --technique auto picks " + picked + ", which is given as well");
+}
+
 // Before anything is loaded or rendered: what is asked for can be written.
 void check_outputs(const RenderArguments& a) {
     check_picture_path(a.out);
@@ -113,6 +124,11 @@ void run(RenderArguments& a) {
     const stages::Camera camera = built.world.camera;
     times.load_ms = now_ms() - load_start;
 
+    if (a.request.error > 0 || a.request.budget > 0) {
+        const chart::AutoChoice choice = chart::choose_settings(device, built.world, scene, a.request, a.options);
+        times.probe_ms = choice.probe_ms;
+        std::fprintf(stderr, "nephroid: auto picks %s: %s\n", choice.options.c_str(), choice.why.c_str());
+    }
     const double prepare_start = now_ms();
     stages::Renderer renderer(device, built.world, a.options.settings);
     throw_faults(renderer.faults());
@@ -138,7 +154,7 @@ void run(RenderArguments& a) {
         for (int r = 0; r < a.runs; ++r) {
             const double start = now_ms();
             throw_faults(renderer.render());
-            times.render_ms.push_back(now_ms() - start + (times.render_ms.empty() ? times.prepare_ms : 0));
+            times.render_ms.push_back(now_ms() - start + (times.render_ms.empty() ? times.probe_ms + times.prepare_ms : 0));
         }
         const double write_start = now_ms();
         hash = write_picture(numbered ? frame_name(a.out, frame) : a.out, picture_of(renderer.picture(), a.layers), a.exposure);
@@ -154,6 +170,8 @@ void add_render_command(CLI::App& app) {
     const auto a = std::make_shared<RenderArguments>();
     CLI::App* c = app.add_subcommand("render", "Render a scene to a picture");
     a->options.add_to(*c);
+    c->add_option("--error", a->request.error, "--technique auto: pick what is expected to meet this relMSE over the picture")->check(number_in(1e-6, 1e6));
+    c->add_option("--budget", a->request.budget, "--technique auto: pick what is expected to come closest within so many ms")->check(number_in(0.001, 1e9))->type_name("MS");
     c->add_option("-o,--output", a->out, "The picture: .exr, .png, .tif or .hdr")->required()->type_name("FILE");
     c->add_flag("--layers", a->layers, "EXR and TIFF: each term of the picture apart, too (caustic.R ..., direct.R ..., emission.R ...)");
     c->add_option("--exposure", a->exposure, "PNG: brighter by this many stops")->check(number_in(-64, 64))->capture_default_str();
@@ -165,7 +183,10 @@ void add_render_command(CLI::App& app) {
     c->add_option("--orbit-camera", a->orbit_camera, "Degrees that the camera turns about the vertical axis per frame")->check(number_in(-360, 360))->capture_default_str();
     c->add_option("--debug-pixel", a->debug_pixel, "Run on one thread and lane, and call nephroid_debug_pixel() before every pixel-stage invocation there")->type_name("COLUMN,ROW");
     c->add_flag("--keep-idle-passes", a->keep_idle, "Run passes that the plan would leave out; the picture is the same");
-    c->callback([a] { run(*a); });
+    c->callback([a, c] {
+        check_request(*a, *c);
+        run(*a);
+    });
 }
 
 }  // namespace nephroid

@@ -10,7 +10,6 @@ namespace nephroid {
 
 struct RenderOptions : SceneOptions {
     std::string technique = "mapping", variant = "two-sided", tracing = "image-space", intersection = "bisection";
-    std::string size;       // "WxH"; empty: 768 high, as wide as the camera's aspect says
     std::string photons = "1024^2";
     int samples = 1, threads = 0, lanes = 0;
     stages::Settings settings;

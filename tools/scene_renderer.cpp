@@ -1,5 +1,6 @@
 #include "tools/scene_renderer.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "tools/frame_statistics.hpp"
@@ -50,8 +51,13 @@ SceneRendering SceneRenderer::render(const stages::Settings& settings, int runs)
         const double frame_start = now_ms();
         throw_faults(renderer.render());
         r.frame_ms.push_back(now_ms() - frame_start);
+        for (std::size_t p = 0; p < renderer.records().size(); ++p) {
+            const stages::PassRecord& record = renderer.records()[p];
+            if (k == 0) r.passes.push_back({renderer.plan().passes[p].kind, record});
+            r.passes[p].record.milliseconds = std::min(r.passes[p].record.milliseconds, record.milliseconds);
+        }
     }
-    for (const stages::PassRecord& pass : renderer.records()) r.statistics += pass.statistics;
+    for (const RenderedPass& pass : r.passes) r.statistics += pass.record.statistics;
     r.audit = renderer.audit();
     r.picture = picture_of(renderer.picture(), true);
     return r;

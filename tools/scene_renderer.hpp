@@ -13,11 +13,18 @@ namespace nephroid {
 // R, G, B; with `layers`, each term apart, too: caustic.R ..., direct.R ..., emission.R ..., as a reader of EXR sorts them.
 PictureData picture_of(const stages::Picture& terms, bool layers);
 
+// A pass that ran, what it took in its fastest run, and what it did.
+struct RenderedPass {
+    stages::PassKind kind;
+    stages::PassRecord record;
+};
+
 struct SceneRendering {
     PictureData picture;  // with its layers
     double prepare_ms = 0;              // memory for the pictures: what a second frame would reuse
     std::vector<double> frame_ms;       // per run
     PipelineStatistics statistics;      // the sum over the passes of a frame
+    std::vector<RenderedPass> passes;
     stages::EnergyAudit audit;
 
     double render_ms() const;  // as `render --stats` counts it: median over the runs, the first one with prepare_ms

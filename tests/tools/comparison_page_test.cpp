@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/tools/browser.hpp"
 #include "tests/tools/pictures.hpp"
 #include "tests/tools/program.hpp"
 
@@ -50,14 +51,6 @@ struct Page {
         CHECK(run_nephroid(folder, {"compare", name, "b.exr", "--html", "page.html"}).code == 1);
     }
 };
-
-// What a browser says on its consoles: page and script errors among it.
-bool complains(const Outcome& o) { return o.err.find(":CONSOLE") != std::string::npos; }
-
-Outcome browse(const Folder& folder, const std::string& address) {
-    return run(folder, {"chromium", "--headless", "--no-sandbox", "--disable-gpu", "--user-data-dir=" + folder.file("profile"), "--host-resolver-rules=MAP * ~NOTFOUND",
-                        "--enable-logging=stderr", "--virtual-time-budget=700", "--dump-dom", "file://" + address});
-}
 
 }  // namespace
 

@@ -1,0 +1,302 @@
+#include "tools/chart/error_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "pipeline/math.hpp"
+#include "tools/chart/model_data.hpp"
+#include "tools/printf_text.hpp"
+
+namespace nephroid::chart {
+
+namespace {
+
+// Symmetric and positive definite: Gaussian elimination.
+template <std::size_t N> std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<double, N> b) {
+    for (std::size_t i = 0; i < N; ++i)
+        for (std::size_t j = i + 1; j < N; ++j) {
+            const double factor = a[j][i] / a[i][i];
+            for (std::size_t c = i; c < N; ++c) a[j][c] -= factor * a[i][c];
+            b[j] -= factor * b[i];
+        }
+    for (std::size_t i = N; i-- > 0;) {
+        for (std::size_t c = i + 1; c < N; ++c) b[i] -= a[i][c] * b[c];
+        b[i] /= a[i][i];
+    }
+    return b;
+}
+
+template <std::size_t N> double dot(const std::array<double, N>& a, const std::array<double, N>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < N; ++k) sum += a[k] * b[k];
+    return sum;
+}
+
+// Not the C library's, which differ from machine to machine: a choice decides a picture's bits.
+double logarithm(double v) { return static_cast<double>(log(static_cast<float>(v))); }
+double exponential(double v) { return static_cast<double>(exp(static_cast<float>(v))); }
+
+constexpr double least_error = 1e-4;
+double squared(double v) { return v * v; }
+
+std::vector<std::string_view> split(std::string_view text, char at) {
+    std::vector<std::string_view> parts;
+    for (std::size_t first = 0;;) {
+        const std::size_t end = text.find(at, first);
+        parts.push_back(text.substr(first, end == std::string_view::npos ? end : end - first));
+        if (end == std::string_view::npos) return parts;
+        first = end + 1;
+    }
+}
+
+const char* column_names = "scene,view,change,caustic_share,facets,crossing,medium,dispersion,probe_cost";
+constexpr std::size_t plain_columns = 9;
+
+std::string header() {
+    std::string text = column_names;
+    for (const char* what : {"relmse", "cost", "expected_cost"})
+        for (std::size_t k = 0; k < ladder().size(); ++k) text.append(",").append(what).append(" ").append(ladder()[k]);
+    return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& ladder() {
+    static const std::vector<std::string> steps = [] {
+        std::vector<std::string> all;
+        for (const auto& [photons, map] : {std::pair{16, 32}, {32, 64}, {64, 128}, {128, 256}, {256, 512}, {512, 1024}, {1024, 1024}})
+            all.push_back(printf_text("--variant two-sided --photons %d^2 --map-size %d --iterations 6 --bounces 4 --no-inner-reflections", photons, map));
+        return all;
+    }();
+    return steps;
+}
+
+// ---- the data
+
+std::string to_csv(const std::vector<ModelRow>& rows) {
+    std::string text = header() + "\n";
+    for (const ModelRow& r : rows) {
+        text += r.scene + "," + r.view + printf_text(",%.4g,%.4g,%.4g,%d,%d,%d,%.4g", r.change, r.caustic_share, r.facets, r.crossing, r.medium, r.dispersion, r.probe_cost);
+        for (const std::vector<double>* values : {&r.errors, &r.costs, &r.expected_costs})
+            for (const double v : *values) text += printf_text(",%.4g", v);
+        text += "\n";
+    }
+    return text;
+}
+
+std::vector<ModelRow> model_from_csv(std::string_view text, const std::string& path) {
+    std::vector<ModelRow> rows;
+    std::vector<std::string_view> lines = split(text, '\n');
+    while (!lines.empty() && lines.back().empty()) lines.pop_back();
+    const std::size_t steps = ladder().size();
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const std::string where = path + ": line " + std::to_string(l + 1) + ": ";
+        if (l == 0) {
+            if (lines[0] != header()) throw std::runtime_error(where + "is not of this program's ladder of settings");
+            continue;
+        }
+        const std::vector<std::string_view> cells = split(lines[l], ',');
+        if (cells.size() != plain_columns + 3 * steps) throw std::runtime_error(where + "has " + std::to_string(cells.size()) + " cells instead of " + std::to_string(plain_columns + 3 * steps));
+        std::vector<double> numbers;
+        for (std::size_t c = 2; c < cells.size(); ++c) {
+            double value = 0;
+            const auto [end, error] = std::from_chars(cells[c].data(), cells[c].data() + cells[c].size(), value);
+            if (error != std::errc() || end != cells[c].data() + cells[c].size() || !(value >= 0)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
+            numbers.push_back(value);
+        }
+        ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4] != 0, numbers[5] != 0, numbers[6], {}, {}, {}};
+        const auto part = [&](std::size_t which) { return std::vector<double>(&numbers[7 + which * steps], &numbers[7 + which * steps] + steps); };
+        r.errors = part(0), r.costs = part(1), r.expected_costs = part(2);
+        rows.push_back(std::move(r));
+    }
+    return rows;
+}
+
+const std::vector<ModelRow>& model_rows() {
+    static const std::vector<ModelRow> rows = model_from_csv(model_data, "model.csv");
+    return rows;
+}
+
+// ---- expectations
+
+namespace {
+
+double middle(std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    const std::size_t n = v.size();
+    return n % 2 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
+}
+
+// Of a normal distribution, from the middle of the absolute values: no single one decides it.
+double standard_deviation(std::vector<double> residuals) {
+    for (double& r : residuals) r = std::abs(r);
+    return 1.4826 * middle(std::move(residuals));
+}
+
+// What no number of photons helps.
+double floor_of(const ModelRow& r) { return std::max(*std::min_element(r.errors.begin(), r.errors.end()), least_error); }
+
+}  // namespace
+
+ErrorModel::Terms ErrorModel::terms_of(const ModelRow& r) {
+    return {1.0, logarithm(r.facets + 0.01) + 4.0, 0.5 * logarithm(r.change + 0.01) + 0.5, r.crossing ? 1.0 : 0.0};
+}
+
+// Least squares of the floors' logarithms, held towards no slope; what lies far off weighs less (Huber 1964).
+ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& rows) {
+    constexpr Terms hold = {1e-9, 0.3, 1.0, 0.3};
+    Terms slopes{};
+    std::vector<double> weights(rows.size(), 1.0);
+    for (int round = 0; round < 8; ++round) {
+        std::array<Terms, terms> a{};
+        Terms b{};
+        for (int i = 0; i < terms; ++i) a[i][i] = hold[i];
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            const Terms t = terms_of(*rows[r]);
+            for (int i = 0; i < terms; ++i) {
+                b[i] += weights[r] * t[i] * logarithm(floor_of(*rows[r]));
+                for (int j = 0; j < terms; ++j) a[i][j] += weights[r] * t[i] * t[j];
+            }
+        }
+        slopes = solve(a, b);
+        std::vector<double> residuals;
+        for (const ModelRow* r : rows) residuals.push_back(logarithm(floor_of(*r)) - dot(slopes, terms_of(*r)));
+        const double far = 1.5 * std::max(0.3, standard_deviation(residuals));
+        for (std::size_t r = 0; r < rows.size(); ++r) weights[r] = std::min(1.0, far / std::max(std::abs(residuals[r]), 1e-9));
+    }
+    return slopes;
+}
+
+ErrorModel::ErrorModel(const std::vector<ModelRow>& rows, const std::string& without) {
+    std::vector<const ModelRow*> used;
+    for (const ModelRow& r : rows)
+        if (r.scene != without && !r.medium && !r.dispersion) used.push_back(&r);
+    if (used.empty()) throw std::runtime_error("the model of errors has no views to go by");
+    // Above its floor a view's error is in proportion to its change.
+    for (std::size_t step = 0; step < ladder().size(); ++step) {
+        std::vector<double> ratios;
+        for (const ModelRow* r : used) {
+            const double floor = floor_of(*r), above = r->errors[step] - floor;
+            if (r->change > 0.01 && above > 0.3 * floor) ratios.push_back(logarithm(above / r->change));
+            else if (r->change > 0.1) ratios.push_back(logarithm(0.02 * floor / r->change));  // too little to be told from none
+        }
+        // Of the finest there is too little above the floors: twice the photons, half the error.
+        const bool told = ratios.size() >= 3 && step + 1 < ladder().size();
+        const double ratio = told ? middle(ratios) : steps_.empty() ? 0 : steps_.back().log_ratio - logarithm(2.0);
+        double spread = steps_.empty() ? least_spread : steps_.back().spread;
+        if (told) {
+            for (double& r : ratios) r -= ratio;
+            spread = std::clamp(standard_deviation(ratios), least_spread, most_spread);
+        }
+        steps_.push_back({steps_.empty() ? ratio : std::min(ratio, steps_.back().log_ratio), spread});
+    }
+    floor_ = fit_floors(used);
+    // As far off as on scenes that the fit has not seen.
+    std::set<std::string> scenes;
+    for (const ModelRow* r : used) scenes.insert(r->scene);
+    std::vector<double> residuals;
+    for (const std::string& scene : scenes) {
+        std::vector<const ModelRow*> others, own;
+        for (const ModelRow* r : used) (r->scene == scene ? own : others).push_back(r);
+        const Terms slopes = fit_floors(others.empty() ? own : others);
+        for (const ModelRow* r : own) residuals.push_back(logarithm(floor_of(*r)) - dot(slopes, terms_of(*r)));
+    }
+    floor_spread_ = std::max(standard_deviation(residuals), least_spread);
+}
+
+std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std::vector<double>& costs) const {
+    std::vector<Expectation> expected;
+    for (std::size_t step = 0; step < ladder().size(); ++step) {
+        Expectation e{features.change * exponential(steps_[step].log_ratio), steps_[step].spread, exponential(dot(floor_, terms_of(features))), floor_spread_, costs[step]};
+        // What is not drawn at all is an error of its own kind.
+        if (features.medium || features.dispersion) e.floor = INFINITY;
+        expected.push_back(e);
+    }
+    return expected;
+}
+
+// ---- choices
+
+namespace {
+
+// Normal distributions, cut into steps.
+constexpr double widest = 2.6, between = 0.2;
+
+std::string in_words(const Expectation& e) {
+    // Within which every other error is expected.
+    constexpr double half_of_all = 0.6745;
+    return printf_text("relMSE %.2g is expected, as likely as not between %.2g and %.2g", e.at(0, 0), e.at(-half_of_all, -half_of_all), e.at(half_of_all, half_of_all));
+}
+
+}  // namespace
+
+double Expectation::at(double change_deviations, double floor_deviations) const {
+    return from_change * exponential(change_spread * change_deviations) + floor * exponential(floor_spread * floor_deviations);
+}
+
+Choice choose_for_error(const std::vector<Expectation>& expected, double error, double probe_cost) {
+    std::vector<double> worth(expected.size());
+    double worth_of_refusing = 0;
+    // All steps are taken to be off by the same number of standard deviations.
+    for (double z = -widest; z <= widest; z += between) {
+        for (double y = -widest; y <= widest; y += between) {
+            const double weight = exponential(-0.5 * (z * z + y * y));
+            std::vector<bool> meets;
+            double cheapest = INFINITY;
+            for (const Expectation& e : expected) {
+                meets.push_back(e.at(z, y) <= error);
+                if (meets.back()) cheapest = std::min(cheapest, e.cost);
+            }
+            if (!std::isfinite(cheapest)) worth_of_refusing += weight;
+            for (std::size_t k = 0; k < expected.size(); ++k)
+                if (meets[k]) worth[k] += weight * std::min(1.0, squared(2 * cheapest / (expected[k].cost + probe_cost)));
+        }
+    }
+    const auto best = std::max_element(worth.begin(), worth.end());
+    if (*best < worth_of_refusing || *best == 0) {
+        const auto least = std::min_element(expected.begin(), expected.end(), [](const Expectation& a, const Expectation& b) { return a.at(0, 0) < b.at(0, 0); });
+        if (!std::isfinite(least->floor)) return {refuse, "the scene has a medium or dispersion, which is not drawn"};
+        return {refuse, "the best that can be had is " + ladder()[static_cast<std::size_t>(least - expected.begin())] + ": " + in_words(*least)};
+    }
+    const int step = static_cast<int>(best - worth.begin());
+    return {step, in_words(expected[static_cast<std::size_t>(step)])};
+}
+
+Choice choose_for_budget(const std::vector<Expectation>& expected, double budget) {
+    int best = refuse;
+    for (int k = 0; k < static_cast<int>(expected.size()); ++k)
+        if (expected[k].cost <= budget && (best == refuse || expected[k].at(0, 0) < expected[best].at(0, 0))) best = k;
+    if (best == refuse) return {refuse, ""};
+    return {best, std::isfinite(expected[best].floor) ? in_words(expected[best]) : "the scene has a medium or dispersion, which is not drawn"};
+}
+
+std::string left_out_figures(const std::vector<ModelRow>& rows) {
+    std::string text;
+    for (const double error : {0.3, 0.1, 0.03}) {
+        int met = 0, at_twice = 0, refused = 0, refused_wrongly = 0, missed = 0;
+        std::string misses;
+        for (const ModelRow& r : rows) {
+            const ErrorModel model(rows, r.scene);
+            const Choice choice = choose_for_error(model.expect(r, r.expected_costs), error, r.probe_cost);
+            double cheapest = INFINITY;
+            for (std::size_t k = 0; k < r.errors.size(); ++k)
+                if (r.errors[k] <= error) cheapest = std::min(cheapest, r.costs[k]);
+            if (choice.step == refuse) {
+                ++refused, refused_wrongly += std::isfinite(cheapest);
+                if (std::isfinite(cheapest)) misses += " " + r.view + " (refused)";
+                continue;
+            }
+            const double got = r.errors[static_cast<std::size_t>(choice.step)], price = r.costs[static_cast<std::size_t>(choice.step)] + r.probe_cost;
+            if (got > error) ++missed, misses += " " + r.view + printf_text(" (%.2g)", got);
+            else ++met, at_twice += price <= 2 * cheapest, misses += price <= 2 * cheapest ? "" : " " + r.view + printf_text(" (%.1f x)", price / cheapest);
+        }
+        text += printf_text("  relMSE %-5g of %zu views %d met, %d of them at up to twice the least cost; %d missed; %d refused, %d of them wrongly:", error, rows.size(), met, at_twice, missed, refused, refused_wrongly) + misses + "\n";
+    }
+    return text;
+}
+
+}  // namespace nephroid::chart

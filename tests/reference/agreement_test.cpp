@@ -128,7 +128,7 @@ TEST_CASE("caustics are the oracle's within the noise that both state") {
     }
 }
 
-// True where NEPHROID_TEST_LEVEL=all asks for what takes half an hour.
+// True where NEPHROID_TEST_LEVEL=all asks for what takes minutes.
 bool is_patient() {
     const char* level = std::getenv("NEPHROID_TEST_LEVEL");
     return level != nullptr && std::string(level) == "all";
@@ -139,8 +139,8 @@ TEST_CASE("light that a medium scatters once is the oracle's, in haze and in a c
     for (const bool cloud : {false, true}) {
         CAPTURE(cloud);
         const scenes::Scene scene = room(cloud);
-        const reference::Tracer tracer = traced(scene, 44, 33, is_patient() ? 30'000'000 : 1'000'000);
-        oracle::Options judge = judging(44, 33, is_patient() ? 100'000'000 : 3'000'000);
+        const reference::Tracer tracer = traced(scene, 44, 33, is_patient() ? 10'000'000 : 1'000'000);
+        oracle::Options judge = judging(44, 33, is_patient() ? 30'000'000 : 3'000'000);
         judge.scattering = judge.direct = true;
         judge.near_eye = 2.5;  // few photons, each with a great weight, are what errors are underestimated of
         const oracle::Result truth = oracle::trace(scene, judge);

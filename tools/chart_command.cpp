@@ -167,7 +167,7 @@ void make_model(const ChartArguments& a) {
         rows.push_back(row);
     }
     progress.clear();
-    std::printf("each scene by the model of all others:\n%s", chart::left_out_figures(rows).c_str());
+    std::printf("%s", chart::left_out_figures(rows).c_str());
     write_whole_file(a.model, chart::to_csv(rows));
 }
 

@@ -119,7 +119,6 @@ void run(RenderArguments& a) {
     say_notes(scene.notes);
     BuiltWorld built = build_world(device, scene);
     say_notes(built.notes);
-    say_notes(failure_notes(built.world, a.options.settings));
     const std::vector<stages::Light> lights = built.world.lights;
     const stages::Camera camera = built.world.camera;
     times.load_ms = now_ms() - load_start;
@@ -129,6 +128,7 @@ void run(RenderArguments& a) {
         times.probe_ms = choice.probe_ms;
         std::fprintf(stderr, "nephroid: auto picks %s: %s\n", choice.options.c_str(), choice.why.c_str());
     }
+    say_notes(failure_notes(built.world, a.options.settings));
     const double prepare_start = now_ms();
     stages::Renderer renderer(device, built.world, a.options.settings);
     throw_faults(renderer.faults());

@@ -39,6 +39,15 @@ double SceneRendering::render_ms() const {
     return median(runs);
 }
 
+std::vector<RenderedPass> passes_of(const stages::Renderer& renderer, const stages::World& world) {
+    std::vector<RenderedPass> passes;
+    for (std::size_t p = 0; p < renderer.records().size(); ++p) {
+        const stages::Pass& pass = renderer.plan().passes[p];
+        passes.push_back({pass.kind, pass.light >= 0 && world.lights[static_cast<std::size_t>(pass.light)].kind != stages::LightKind::Directional, renderer.records()[p]});
+    }
+    return passes;
+}
+
 SceneRenderer::SceneRenderer(Device& device, const scenes::Scene& scene) : device_(device), built_(build_world(device, scene)) {}
 
 SceneRendering SceneRenderer::render(const stages::Settings& settings, int runs) {
@@ -51,11 +60,9 @@ SceneRendering SceneRenderer::render(const stages::Settings& settings, int runs)
         const double frame_start = now_ms();
         throw_faults(renderer.render());
         r.frame_ms.push_back(now_ms() - frame_start);
-        for (std::size_t p = 0; p < renderer.records().size(); ++p) {
-            const stages::PassRecord& record = renderer.records()[p];
-            if (k == 0) r.passes.push_back({renderer.plan().passes[p].kind, record});
-            r.passes[p].record.milliseconds = std::min(r.passes[p].record.milliseconds, record.milliseconds);
-        }
+        const std::vector<RenderedPass> passes = passes_of(renderer, built_.world);
+        if (k == 0) r.passes = passes;
+        for (std::size_t p = 0; p < passes.size(); ++p) r.passes[p].record.milliseconds = std::min(r.passes[p].record.milliseconds, passes[p].record.milliseconds);
     }
     for (const RenderedPass& pass : r.passes) r.statistics += pass.record.statistics;
     r.audit = renderer.audit();

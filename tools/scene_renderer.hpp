@@ -16,8 +16,11 @@ PictureData picture_of(const stages::Picture& terms, bool layers);
 // A pass that ran, what it took in its fastest run, and what it did.
 struct RenderedPass {
     stages::PassKind kind;
+    bool cube;  // it is of a light that shines to all sides
     stages::PassRecord record;
 };
+// Of the last frame.
+std::vector<RenderedPass> passes_of(const stages::Renderer& renderer, const stages::World& world);
 
 struct SceneRendering {
     PictureData picture;  // with its layers

@@ -10,7 +10,7 @@ namespace nephroid::chart {
 namespace {
 
 constexpr const char* work_names[works] = {"cube maps", "views", "photons", "splats", "map texels", "seen through", "shading"};
-constexpr const char* count_names[counts] = {"pass", "vertex", "primitive", "fragment", "blended fragment", "photon that landed", "step"};
+constexpr const char* count_names[counts] = {"texel", "vertex", "primitive", "fragment", "blended fragment", "photon that landed", "step"};
 
 // ns, [Work][Count].
 constexpr double weights_ns[works][counts] = {
@@ -46,6 +46,35 @@ Work work_of(stages::PassKind kind) {
         case Impostor: break;
     }
     return Work::CubeGeometry;
+}
+
+double squared(double v) { return v * v; }
+
+// Of a pass' targets.
+double texels_of(const RenderedPass& pass, const stages::Settings& s) {
+    using enum stages::PassKind;
+    const double faces = pass.cube ? 6 : 1;
+    switch (pass.kind) {
+        case ShadowMap: return faces * squared(s.shadow_map_size);
+        case ReceiverMap: return faces * squared(s.receiver_map_size);
+        case Impostor: return 6 * squared(s.impostor_size);
+        case CasterLayers:
+        case Photons:
+        case FitCausticView: return squared(s.photons);
+        case CausticReceivers:
+        case SplatPhotons:
+        case ResolveCaustic: return squared(s.map_size);
+        case SurfacePoints:
+        case HideBehind:
+        case SeenLayers:
+        case TraceSeen:
+        case Surroundings:
+        case Emission:
+        case DirectLight:
+        case CausticLight:
+        case Downsample: break;
+    }
+    return static_cast<double>(s.width) * s.height * s.samples_side * s.samples_side;
 }
 
 template <std::size_t N> double dot(const std::array<double, N>& a, const std::array<double, N>& b) {
@@ -86,7 +115,7 @@ Amounts amounts_of(const std::vector<RenderedPass>& passes, const stages::Settin
     for (const RenderedPass& pass : passes) {
         const PipelineStatistics& s = pass.record.statistics;
         const Work work = work_of(pass.kind);
-        add(work, Count::Passes, 1);
+        add(work, Count::Texels, texels_of(pass, settings));
         add(work, Count::Vertices, static_cast<double>(s.vs_invocations));
         add(work, Count::Primitives, static_cast<double>(s.c_primitives));
         add(work, Count::Fragments, static_cast<double>(s.ps_invocations));

@@ -18,7 +18,7 @@ inline constexpr int works = 7;
 
 // What is counted of a kind of work.
 enum class Count {
-    Passes,
+    Texels,         // of targets: they are cleared, or covered once
     Vertices,       // vs_invocations
     Primitives,     // c_primitives
     Fragments,      // ps_invocations

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <stdexcept>
 
@@ -137,6 +138,13 @@ double standard_deviation(std::vector<double> residuals) {
     return 1.4826 * middle(std::move(residuals));
 }
 
+// Of what a lack of photons makes to the change; NaN where the floor hides it.
+double log_ratio(double change, double error, double floor) {
+    const double above = error - floor;
+    if (change > 0.01 && above > 0.3 * floor) return logarithm(above / change);
+    return change > 0.1 ? logarithm(0.02 * floor / change) : NAN;
+}
+
 // What no number of photons helps.
 double floor_of(const ModelRow& r) { return std::max(*std::min_element(r.errors.begin(), r.errors.end()), least_error); }
 
@@ -171,19 +179,19 @@ ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& row
     return slopes;
 }
 
-ErrorModel::ErrorModel(const std::vector<ModelRow>& rows, const std::string& without) {
+ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
     std::vector<const ModelRow*> used;
     for (const ModelRow& r : rows)
-        if (r.scene != without && !r.medium && !r.dispersion) used.push_back(&r);
+        if (!r.medium && !r.dispersion) used.push_back(&r);
     if (used.empty()) throw std::runtime_error("the model of errors has no views to go by");
     // Above its floor a view's error is in proportion to its change.
+    std::vector<std::vector<double>> of_view(used.size());  // log ratio of each step; NaN: too little is known
+    for (std::size_t r = 0; r < used.size(); ++r)
+        for (const double error : used[r]->errors) of_view[r].push_back(log_ratio(used[r]->change, error, floor_of(*used[r])));
     for (std::size_t step = 0; step < ladder().size(); ++step) {
         std::vector<double> ratios;
-        for (const ModelRow* r : used) {
-            const double floor = floor_of(*r), above = r->errors[step] - floor;
-            if (r->change > 0.01 && above > 0.3 * floor) ratios.push_back(logarithm(above / r->change));
-            else if (r->change > 0.1) ratios.push_back(logarithm(0.02 * floor / r->change));  // too little to be told from none
-        }
+        for (const std::vector<double>& v : of_view)
+            if (!std::isnan(v[step])) ratios.push_back(v[step]);
         // Of the finest there is too little above the floors: twice the photons, half the error.
         const bool told = ratios.size() >= 3 && step + 1 < ladder().size();
         const double ratio = told ? middle(ratios) : steps_.empty() ? 0 : steps_.back().log_ratio - logarithm(2.0);
@@ -206,12 +214,36 @@ ErrorModel::ErrorModel(const std::vector<ModelRow>& rows, const std::string& wit
         for (const ModelRow* r : own) residuals.push_back(logarithm(floor_of(*r)) - dot(slopes, terms_of(*r)));
     }
     floor_spread_ = std::max(standard_deviation(residuals), least_spread);
+
+    for (std::size_t r = 0; r < used.size(); ++r) {
+        double sum = 0, count = 0;
+        for (std::size_t step = 0; step + 1 < ladder().size(); ++step)
+            if (!std::isnan(of_view[r][step])) sum += std::clamp((of_view[r][step] - steps_[step].log_ratio) / steps_[step].spread, -2.5, 2.5), count += 1;
+        known_.push_back({place_of(*used[r]), count > 0 ? sum / count : 0, logarithm(floor_of(*used[r])) - dot(floor_, terms_of(*used[r]))});
+    }
+}
+
+// Views that are a distance of 1 apart have little to do with each other.
+ErrorModel::Terms ErrorModel::place_of(const ModelRow& r) {
+    return {logarithm(r.facets + 0.01) / 0.25, logarithm(r.change + 0.001) / 1.0, logarithm(r.caustic_share + 0.01) / 0.7, r.crossing ? 2.0 : 0.0};
 }
 
 std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std::vector<double>& costs) const {
+    // What is known of views like this one; and as much as one view's worth that it is like none.
+    double weights = 1, ratios = 0, floors = 0;
+    const Terms place = place_of(features);
+    for (const Known& k : known_) {
+        double squares = 0;
+        for (int i = 0; i < terms; ++i) squares += squared(place[i] - k.place[i]);
+        const double weight = exponential(-0.5 * squares);
+        weights += weight, ratios += weight * k.ratios, floors += weight * k.floor;
+    }
+    const double surer = 1 / std::sqrt(weights);
     std::vector<Expectation> expected;
     for (std::size_t step = 0; step < ladder().size(); ++step) {
-        Expectation e{features.change * exponential(steps_[step].log_ratio), steps_[step].spread, exponential(dot(floor_, terms_of(features))), floor_spread_, costs[step]};
+        const Step& s = steps_[step];
+        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios / weights), std::max(s.spread * surer, least_spread),
+                      exponential(dot(floor_, terms_of(features)) + floors / weights), std::max(floor_spread_ * surer, least_spread), costs[step]};
         // What is not drawn at all is an error of its own kind.
         if (features.medium || features.dispersion) e.floor = INFINITY;
         expected.push_back(e);
@@ -274,29 +306,45 @@ Choice choose_for_budget(const std::vector<Expectation>& expected, double budget
     return {best, std::isfinite(expected[best].floor) ? in_words(expected[best]) : "the scene has a medium or dispersion, which is not drawn"};
 }
 
-std::string left_out_figures(const std::vector<ModelRow>& rows) {
+namespace {
+
+std::string figures_without(const std::vector<ModelRow>& rows, const std::function<bool(const ModelRow& row, const ModelRow& of)>& left_out) {
     std::string text;
     for (const double error : {0.3, 0.1, 0.03}) {
-        int met = 0, at_twice = 0, refused = 0, refused_wrongly = 0, missed = 0;
-        std::string misses;
+        int right = 0, met = 0, too_dear = 0, missed = 0, refused = 0, refused_wrongly = 0;
+        std::string wrong;
         for (const ModelRow& r : rows) {
-            const ErrorModel model(rows, r.scene);
-            const Choice choice = choose_for_error(model.expect(r, r.expected_costs), error, r.probe_cost);
+            std::vector<ModelRow> others;
+            for (const ModelRow& o : rows)
+                if (!left_out(o, r)) others.push_back(o);
+            const Choice choice = choose_for_error(ErrorModel(others).expect(r, r.expected_costs), error, r.probe_cost);
             double cheapest = INFINITY;
             for (std::size_t k = 0; k < r.errors.size(); ++k)
                 if (r.errors[k] <= error) cheapest = std::min(cheapest, r.costs[k]);
+            std::string why;
             if (choice.step == refuse) {
-                ++refused, refused_wrongly += std::isfinite(cheapest);
-                if (std::isfinite(cheapest)) misses += " " + r.view + " (refused)";
-                continue;
+                ++refused;
+                if (std::isfinite(cheapest)) ++refused_wrongly, why = "refused";
+            } else {
+                const double got = r.errors[static_cast<std::size_t>(choice.step)], price = r.costs[static_cast<std::size_t>(choice.step)] + r.probe_cost;
+                if (got > error) ++missed, why = printf_text("%.2g", got);
+                else if (++met; price > 2 * cheapest) ++too_dear, why = printf_text("%.1f x", price / cheapest);
             }
-            const double got = r.errors[static_cast<std::size_t>(choice.step)], price = r.costs[static_cast<std::size_t>(choice.step)] + r.probe_cost;
-            if (got > error) ++missed, misses += " " + r.view + printf_text(" (%.2g)", got);
-            else ++met, at_twice += price <= 2 * cheapest, misses += price <= 2 * cheapest ? "" : " " + r.view + printf_text(" (%.1f x)", price / cheapest);
+            if (why.empty()) ++right;
+            else wrong += (wrong.empty() ? "" : ", ") + r.view + " " + why;
         }
-        text += printf_text("  relMSE %-5g of %zu views %d met, %d of them at up to twice the least cost; %d missed; %d refused, %d of them wrongly:", error, rows.size(), met, at_twice, missed, refused, refused_wrongly) + misses + "\n";
+        text += printf_text("  relMSE %-5g right for %d of %zu views: %d met (%d of them at more than twice the least cost), %d missed, %d refused (%d of them wrongly)\n", error, right, rows.size(), met, too_dear, missed,
+                            refused, refused_wrongly) +
+                "    " + wrong + "\n";
     }
     return text;
+}
+
+}  // namespace
+
+std::string left_out_figures(const std::vector<ModelRow>& rows) {
+    return "each scene by the model of all others:\n" + figures_without(rows, [](const ModelRow& row, const ModelRow& of) { return row.scene == of.scene; }) +
+           "each view by the model of all others, the same scene's among them:\n" + figures_without(rows, [](const ModelRow& row, const ModelRow& of) { return row.view == of.view; });
 }
 
 }  // namespace nephroid::chart

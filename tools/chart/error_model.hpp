@@ -4,7 +4,8 @@
 // proportion to how much a probe's pictures differ (probe.hpp), with a ratio for each step of a ladder of settings; the
 // latter grows with the coarseness of meshes, with that difference, and where light meets two specular objects in a row.
 // Ratios are medians over the model's views, the floor's logarithm a robust linear fit; both are expected to be as far off
-// as they were for the views, the floor as far as for scenes that the fit was made without. The data, model.csv, are made by
+// as they were for the views, the floor as far as for scenes that the fit was made without. Where views are much like the one
+// that is asked for, it is expected to be off as they are, and less uncertainly so. The data, model.csv, are made by
 // `nephroid chart --model FILE`. A choice takes no time, and with --error it is the same on every machine.
 #pragma once
 #include <array>
@@ -44,8 +45,8 @@ struct Expectation {
 
 class ErrorModel {
 public:
-    // Without the views of one scene, if a name is given. Throws std::runtime_error where there is none left.
-    explicit ErrorModel(const std::vector<ModelRow>& rows, const std::string& without = "");
+    // Throws std::runtime_error where there is no view to go by.
+    explicit ErrorModel(const std::vector<ModelRow>& rows);
     // For each of the ladder; costs are those given.
     std::vector<Expectation> expect(const ModelRow& features, const std::vector<double>& costs) const;
 
@@ -58,7 +59,14 @@ private:
     struct Step {
         double log_ratio, spread;
     };
+    // A view, and how far off it is: its ratios in standard deviations, the same for all steps; its floor's logarithm.
+    struct Known {
+        Terms place;
+        double ratios, floor;
+    };
+    static Terms place_of(const ModelRow& row);
     std::vector<Step> steps_;  // for each of the ladder
+    std::vector<Known> known_;
     Terms floor_{};
     double floor_spread_ = 0;
 };
@@ -77,7 +85,8 @@ Choice choose_for_error(const std::vector<Expectation>& expected, double error, 
 // The least error that is expected within a budget of costs.
 Choice choose_for_budget(const std::vector<Expectation>& expected, double budget);
 
-// How often the choice is right for scenes that the model has not seen: a table in words, a line for each error asked for.
+// How often the choice is right for scenes that the model has not seen, and for views of scenes of which it has seen others: a
+// table in words, a line for each error asked for.
 std::string left_out_figures(const std::vector<ModelRow>& rows);
 
 }  // namespace nephroid::chart

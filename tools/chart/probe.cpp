@@ -38,7 +38,7 @@ Drawn draw(Device& device, const stages::World& world, const stages::Settings& s
     throw_faults(renderer.faults());
     throw_faults(renderer.render());
     Drawn drawn;
-    for (std::size_t p = 0; p < renderer.records().size(); ++p) drawn.passes.push_back({renderer.plan().passes[p].kind, renderer.records()[p]});
+    drawn.passes = passes_of(renderer, world);
     const PictureData all = picture_of(renderer.picture(), true);
     drawn.picture = select_channels(all, {"R", "G", "B"}, "probe");
     drawn.caustic = select_channels(all, {"caustic.R", "caustic.G", "caustic.B"}, "probe");

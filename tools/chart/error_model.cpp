@@ -229,21 +229,24 @@ ErrorModel::Terms ErrorModel::place_of(const ModelRow& r) {
 }
 
 std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std::vector<double>& costs) const {
-    // What is known of views like this one; and as much as one view's worth that it is like none.
-    double weights = 1, ratios = 0, floors = 0;
+    // What is known of views like this one, and as much as one view's worth that it is like none: means and variances, of
+    // ratios in standard deviations.
     const Terms place = place_of(features);
+    double weights = 1, ratios = 0, floors = 0, ratio_squares = 1, floor_squares = squared(floor_spread_);
     for (const Known& k : known_) {
         double squares = 0;
         for (int i = 0; i < terms; ++i) squares += squared(place[i] - k.place[i]);
         const double weight = exponential(-0.5 * squares);
         weights += weight, ratios += weight * k.ratios, floors += weight * k.floor;
+        ratio_squares += weight * squared(k.ratios), floor_squares += weight * squared(k.floor);
     }
-    const double surer = 1 / std::sqrt(weights);
+    ratios /= weights, floors /= weights;
+    const double ratio_spread = std::sqrt(std::max(ratio_squares / weights - squared(ratios), 0.0)), floor_spread = std::sqrt(std::max(floor_squares / weights - squared(floors), 0.0));
     std::vector<Expectation> expected;
     for (std::size_t step = 0; step < ladder().size(); ++step) {
         const Step& s = steps_[step];
-        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios / weights), std::max(s.spread * surer, least_spread),
-                      exponential(dot(floor_, terms_of(features)) + floors / weights), std::max(floor_spread_ * surer, least_spread), costs[step]};
+        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, least_spread),
+                      exponential(dot(floor_, terms_of(features)) + floors), std::max(floor_spread, least_spread), costs[step]};
         // What is not drawn at all is an error of its own kind.
         if (features.medium || features.dispersion) e.floor = INFINITY;
         expected.push_back(e);

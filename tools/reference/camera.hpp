@@ -22,7 +22,6 @@ public:
           height_(height) {}
 
     const Vec& eye() const { return eye_; }
-    const Vec& forward() const { return forward_; }
     int width() const { return width_; }
     int height() const { return height_; }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "scenes/bundled.hpp"
+#include "scenes/shapes.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/chart/auto_settings.hpp"
 #include "tools/chart/model_views.hpp"
@@ -174,7 +175,7 @@ TEST_CASE("a model's data come back as they were, and other data are refused wit
     std::string broken = csv;
     CHECK(refusal(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "x")).find("m.csv: line 2: 'x' is no number from 0 on") == 0);
     broken = csv;
-    CHECK(refusal(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "nan")).find("m.csv: line 2: 'nan' is no number from 0 on") == 0);
+    CHECK(refusal(broken.replace(broken.find(",0.3,") + 1, 3, "nan")).find("m.csv: line 2: 'nan' is no number from 0 on") == 0);
 }
 
 TEST_CASE("the program's own data: every view of the model, with errors that fall as costs rise") {
@@ -201,6 +202,19 @@ TEST_CASE("a probe tells the same for every number of lanes and threads") {
         const stages::Settings s = options_of({"", step}, "512x384").settings;
         CHECK(expected_cost(wide, s) == expected_cost(serial, s));
     }
+}
+
+TEST_CASE("a probe draws one picture where the meshes are large") {
+    scenes::Scene scene = scenes::bundled_scene("glass-sphere");
+    CHECK_FALSE(std::isnan(probe_of(scene, 0, 0).change));
+    scene.meshes[1] = scenes::make_sphere("sphere", scene.meshes[1].material, {0, 0.55f, 0}, 0.5f, 7);  // 327,680 triangles
+    const Probe large = probe_of(scene, 0, 0);
+    CHECK(std::isnan(large.change));
+    CHECK(large.cost > 0);
+    // What is chosen then is no cheapest setting, and not refused, where the error asked for is loose.
+    const ModelRow features{"", "", large.change, 0.3, 0.02, false, false, false, large.cost, {}, {}, {}};
+    const Choice choice = choose_for_error(ErrorModel(lawful_rows()).expect(features, {100, 105, 110, 120, 150, 300, 700}), 0.3, 60);
+    CHECK(choice.step > 0);
 }
 
 TEST_CASE("a probe sees media, dispersion, and specular objects in a row") {

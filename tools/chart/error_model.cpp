@@ -106,7 +106,7 @@ std::vector<ModelRow> model_from_csv(std::string_view text, const std::string& p
         for (std::size_t c = 2; c < cells.size(); ++c) {
             double value = 0;
             const auto [end, error] = std::from_chars(cells[c].data(), cells[c].data() + cells[c].size(), value);
-            if (error != std::errc() || end != cells[c].data() + cells[c].size() || !(value >= 0)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
+            if (error != std::errc() || end != cells[c].data() + cells[c].size() || value < 0 || (std::isnan(value) && c > 2)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
             numbers.push_back(value);
         }
         ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4] != 0, numbers[5] != 0, numbers[6], {}, {}, {}};
@@ -182,7 +182,7 @@ ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& row
 ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
     std::vector<const ModelRow*> used;
     for (const ModelRow& r : rows)
-        if (!r.medium && !r.dispersion) used.push_back(&r);
+        if (!r.medium && !r.dispersion && !std::isnan(r.change)) used.push_back(&r);
     if (used.empty()) throw std::runtime_error("the model of errors has no views to go by");
     // Above its floor a view's error is in proportion to its change.
     std::vector<std::vector<double>> of_view(used.size());  // log ratio of each step; NaN: too little is known
@@ -228,7 +228,12 @@ ErrorModel::Terms ErrorModel::place_of(const ModelRow& r) {
     return {logarithm(r.facets + 0.01) / 0.25, logarithm(r.change + 0.001) / 1.0, logarithm(r.caustic_share + 0.01) / 0.7, r.crossing ? 2.0 : 0.0};
 }
 
-std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std::vector<double>& costs) const {
+std::vector<Expectation> ErrorModel::expect(const ModelRow& asked, const std::vector<double>& costs) const {
+    // A change that is not known is taken to be a middling one, and may be far from that.
+    constexpr double middling = 0.1, far = 1.5;
+    const bool known = !std::isnan(asked.change);
+    ModelRow features = asked;
+    if (!known) features.change = middling;
     // What is known of views like this one, and as much as one view's worth that it is like none: means and variances, of
     // ratios in standard deviations.
     const Terms place = place_of(features);
@@ -245,7 +250,7 @@ std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std:
     std::vector<Expectation> expected;
     for (std::size_t step = 0; step < ladder().size(); ++step) {
         const Step& s = steps_[step];
-        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, least_spread),
+        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, known ? least_spread : far),
                       exponential(dot(floor_, terms_of(features)) + floors), std::max(floor_spread, least_spread), costs[step]};
         // What is not drawn at all is an error of its own kind.
         if (features.medium || features.dispersion) e.floor = INFINITY;

@@ -47,7 +47,7 @@ class ErrorModel {
 public:
     // Throws std::runtime_error where there is no view to go by.
     explicit ErrorModel(const std::vector<ModelRow>& rows);
-    // For each of the ladder; costs are those given.
+    // For each of the ladder; costs are those given. The change may be NaN, not known.
     std::vector<Expectation> expect(const ModelRow& features, const std::vector<double>& costs) const;
 
 private:

@@ -60,15 +60,30 @@ Scene mirror_ball() {
     add_camera(s, {0.5f, 1.5f, 3.0f}, {0, 0.5f, 0});
     return s;
 }
-// Flat faces: a gem of two pyramids' outline, in eight segments.
-Scene gem() {
+// Coarse meshes with smooth normals, as real ones are: a glass ring, and a mirror ball.
+Scene coarse_ring() {
     Scene s;
     add_room(s, 1.5f);
-    constexpr glm::vec2 down = {0.8f, -0.6f}, up = {0.6f, 0.8f};
-    const std::array<OutlinePoint, 4> outline{{{0, 0, down}, {0.4f, 0.5333f, down}, {0.4f, 0.5333f, up}, {0, 0.8333f, up}}};
-    s.meshes.push_back(make_revolution("gem", add_glass(s, 1.6f), {0, 0.05f, 0}, outline, 8));
-    add_light(s, LightType::Spot, {-1.1f, 2.4f, 0.8f}, {0, 0.4f, 0}, 30);
-    add_camera(s, {0.6f, 1.4f, 2.6f}, {0, 0.3f, 0});
+    s.meshes.push_back(make_torus("ring", add_glass(s, 1.5f), {0, 0.35f, 0}, 0.4f, 0.16f, 28, 14));
+    add_light(s, LightType::Point, {-1.0f, 2.4f, 0.7f}, {}, 20);
+    add_camera(s, {0.5f, 1.5f, 2.7f}, {0, 0.3f, 0});
+    return s;
+}
+Scene coarse_ball() {
+    Scene s;
+    add_room(s, 1.5f);
+    s.meshes.push_back(make_sphere("ball", add_mirror(s), {0.1f, 0.45f, -0.2f}, 0.4f, 2));
+    add_light(s, LightType::Spot, {0.9f, 2.3f, 0.9f}, {0.1f, 0.45f, -0.2f}, 30);
+    add_camera(s, {-0.5f, 1.5f, 2.9f}, {0, 0.4f, 0});
+    return s;
+}
+// Nothing specular.
+Scene matte_ball() {
+    Scene s;
+    add_room(s, 1.5f);
+    s.meshes.push_back(make_sphere("ball", add_lambert(s, "clay", glm::vec3(0.6f)), {0, 0.5f, 0}, 0.4f, 4));
+    add_light(s, LightType::Point, {-1.0f, 2.4f, 0.9f}, {}, 20);
+    add_camera(s, {0.5f, 1.5f, 2.9f}, {0, 0.4f, 0});
     return s;
 }
 // Two balls in a row, as the light comes: the second one's caustic is of light that the first has bent.
@@ -118,7 +133,7 @@ struct Made {
     const char* name;
     Scene (*make)();
 };
-constexpr Made made[] = {{"mirror-ball", mirror_ball}, {"gem", gem}, {"two-balls", two_balls}, {"bowl", bowl}, {"lens", lens}, {"wavy-mirror", wavy_mirror}};
+constexpr Made made[] = {{"mirror-ball", mirror_ball}, {"coarse-ring", coarse_ring}, {"coarse-ball", coarse_ball}, {"matte-ball", matte_ball}, {"two-balls", two_balls}, {"bowl", bowl}, {"lens", lens}, {"wavy-mirror", wavy_mirror}};
 
 Scene make_scene(const std::string& name) {
     for (const Made& m : made)

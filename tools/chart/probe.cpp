@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "tools/picture_difference.hpp"
 #include "tools/throw_faults.hpp"
@@ -23,7 +24,9 @@ stages::Settings probe_settings(int width, int height, int photons) {
     s.photons = photons;
     s.map_size = 2 * photons;
     s.iterations = 6;
+    s.bounces = 4;
     s.inner_reflections = false;
+    s.solid_layers = 2;
     s.receiver_map_size = s.shadow_map_size = 256;
     s.impostor_size = 128;
     return s;
@@ -104,20 +107,29 @@ double squared(double v) { return v * v; }
 Probe probe(Device& device, const stages::World& world, const scenes::Scene& scene, int width, int height) {
     const double start = now_ms();
     Probe p;
-    const stages::Settings coarse = probe_settings(width, height, 16);
     p.settings = probe_settings(width, height, 64);
-    const Drawn few = draw(device, world, coarse), more = draw(device, world, p.settings);
+    const Drawn more = draw(device, world, p.settings);
+    p.passes = more.passes;
+    p.cost = cost_of(amounts_of(more.passes, p.settings));
     const PixelMask nothing(more.picture.pixel_count());
     const PixelMask rest = not_caustic(more.picture, more.caustic, nothing);
-    constexpr double most = 1000;  // where the second picture is black, too
-    p.change = std::min(measure(few.picture, more.picture, nothing).relative_mse, most);
     p.caustic_share = static_cast<double>(std::count(rest.begin(), rest.end(), false)) / static_cast<double>(rest.size());
     p.facets = facets_of(world);
     p.crossing = crosses(world);
     p.medium = std::any_of(scene.media.begin(), scene.media.end(), [](const scenes::Medium& m) { return m.type != scenes::Medium::Type::None; });
     p.dispersion = std::any_of(scene.materials.begin(), scene.materials.end(), [](const scenes::Material& m) { return m.kind() == scenes::SurfaceKind::Dielectric && m.dispersion > 0; });
-    p.cost = cost_of(amounts_of(few.passes, coarse)) + cost_of(amounts_of(more.passes, p.settings));
-    p.passes = more.passes;
+    // Of large meshes a small picture takes nearly as long as a large one: a second would cost more than it is worth.
+    constexpr double dear = 0.4;
+    stages::Settings frame = p.settings;
+    frame.width = width, frame.height = height;
+    frame.shadow_map_size = stages::Settings().shadow_map_size, frame.receiver_map_size = stages::Settings().receiver_map_size, frame.impostor_size = stages::Settings().impostor_size;
+    if (p.cost < dear * expected_cost(p, frame)) {
+        const stages::Settings coarse = probe_settings(width, height, 16);
+        const Drawn few = draw(device, world, coarse);
+        p.cost += cost_of(amounts_of(few.passes, coarse));
+        constexpr double most = 1000;  // where the second picture is black, too
+        p.change = std::min(measure(few.picture, more.picture, nothing).relative_mse, most);
+    }
     p.milliseconds = now_ms() - start;
     return p;
 }

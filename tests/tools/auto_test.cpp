@@ -178,13 +178,13 @@ TEST_CASE("a model's data come back as they were, and other data are refused wit
     CHECK(refusal(broken.replace(broken.find(",0.3,") + 1, 3, "nan")).find("m.csv: line 2: 'nan' is no number from 0 on") == 0);
 }
 
-TEST_CASE("the program's own data: every view of the model, with errors that fall as costs rise") {
+TEST_CASE("the program's own data: every view of the model, with costs that rise") {
     const std::vector<ModelRow>& rows = model_rows();
     REQUIRE(rows.size() == model_views().size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
         CAPTURE(rows[k].view);
         CHECK(rows[k].view == model_views()[k].name);
-        for (std::size_t step = 1; step < ladder().size(); ++step) CHECK(rows[k].costs[step] > rows[k].costs[step - 1]);
+        for (std::size_t step = 1; step < ladder().size(); ++step) CHECK(rows[k].costs[step] >= rows[k].costs[step - 1]);
         // What is expected of costs is near what they are.
         for (std::size_t step = 0; step < ladder().size(); ++step) CHECK(rows[k].expected_costs[step] == doctest::Approx(rows[k].costs[step]).epsilon(0.35));
     }

@@ -136,7 +136,9 @@ TEST_CASE("temporal error: flicker, by hand") {
     std::vector<PictureData> still(4, gray_row({{2, 0}, {2, 0}}));
     for (int frame = 0; frame < 4; ++frame) truths[frame] = truth_of(pictures[frame]);
     CHECK(temporal_error(still, truths) == doctest::Approx(std::sqrt(0.125) / (13.0 / 6)).epsilon(1e-14));
-    // Left out in one frame, a pixel takes part in none of that frame's changes.
+    // Left out in one frame, a pixel takes part neither in the change to it nor in the change from it.
+    truths[1].mask[1] = true;
+    CHECK(temporal_error(still, truths) == doctest::Approx(0.25 / 2.125).epsilon(1e-14));
     for (Truth& t : truths) t.mask[1] = true;
     CHECK(temporal_error(still, truths) == 0);
 }

@@ -1,6 +1,7 @@
 // What sweeps measure, against hand-made pictures and photons; their scenes; the command's answers.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -135,7 +136,9 @@ TEST_CASE("temporal error: flicker, by hand") {
     std::vector<PictureData> still(4, gray_row({{2, 0}, {2, 0}}));
     for (int frame = 0; frame < 4; ++frame) truths[frame] = truth_of(pictures[frame]);
     CHECK(temporal_error(still, truths) == doctest::Approx(std::sqrt(0.125) / (13.0 / 6)).epsilon(1e-14));
-    // Left out in one frame, a pixel takes part in none of that frame's changes.
+    // Left out in one frame, a pixel takes part neither in the change to it nor in the change from it.
+    truths[1].mask[1] = true;
+    CHECK(temporal_error(still, truths) == doctest::Approx(0.25 / 2.125).epsilon(1e-14));
     for (Truth& t : truths) t.mask[1] = true;
     CHECK(temporal_error(still, truths) == 0);
 }
@@ -358,9 +361,16 @@ TEST_CASE("notes of failures: for the zones that sweeps measured, and for nothin
     CHECK(notes(without_specular(scenes::bundled_scene("glass-sphere")), few).empty());
 }
 
+TEST_CASE("that dispersion is not drawn is said") {
+    Device device;
+    const std::vector<std::string> notes = build_world(device, scenes::bundled_scene("prism")).notes;
+    CHECK(std::find(notes.begin(), notes.end(), "material 'flint' disperses light: every colour is bent alike, as its index of refraction says") != notes.end());
+    for (const std::string& note : build_world(device, scenes::bundled_scene("glass-sphere")).notes) CHECK(note.find("disperses") == std::string::npos);
+}
+
 TEST_CASE("render tells of a zone that it is in, and draws all the same") {
     const Folder folder;
-    const Outcome o = run_nephroid(folder, {"render", "prism", "--size", "16x12", "--photons", "16^2", "--map-size", "256", "-o", "a.png"});
+    const Outcome o = run_nephroid(folder, {"render", "glass-sphere", "--size", "16x12", "--photons", "16^2", "--map-size", "256", "-o", "a.png"});
     CHECK(o.code == 0);
     CHECK(o.err == "nephroid: 16^2 photons are too few for a caustic map of 256^2 texels: splats do not reach from one to the next, and the caustic falls into spots\n");
     CHECK(folder.files() == std::vector<std::string>{"a.png"});

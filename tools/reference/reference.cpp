@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tools/picture_difference.hpp"
+#include "tools/printf_text.hpp"
 #include "tools/reference/camera.hpp"
 #include "tools/reference/digest.hpp"
 #include "tools/reference/emission.hpp"
@@ -353,6 +354,10 @@ double Tracer::noise() const { return impl_->noise_of(false); }
 double Tracer::caustic_noise() const { return impl_->noise_of(true); }
 std::uint64_t Tracer::photons() const { return impl_->passes * impl_->options.photons_per_pass; }
 int Tracer::passes() const { return static_cast<int>(impl_->passes); }
+
+std::vector<std::pair<std::string, std::string>> Tracer::metadata() const {
+    return {{scene_name, text_of_digest(impl_->digest)}, {photons_name, std::to_string(photons())}, {noise_name, printf_text("%.4g", noise())}, {caustic_noise_name, printf_text("%.4g", caustic_noise())}};
+}
 
 const std::vector<std::string>& Tracer::notes() const { return impl_->notes; }
 

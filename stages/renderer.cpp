@@ -473,6 +473,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<Ta
     photons.side = settings.photons;
     photons.mesh = pass.mesh;
     photons.other_branch_followed = map.other_branch;
+    photons.lie_open = TracedWorld::lies_open(world, light);
     draw_screen("photons", photons, targets);
 }
 

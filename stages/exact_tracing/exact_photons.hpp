@@ -14,6 +14,7 @@ struct TraceExactPhotons {
     int side = 1;    // photons along an edge
     int mesh = 0;    // the object
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
+    bool lie_open = false;  // no receiver hides any part of another from the light
 
     // Targets as TracePhotons'.
     template <class F>
@@ -37,6 +38,10 @@ struct TraceExactPhotons {
             ray.ledger.clear(!ray.by_chance);
             ray.landed = ray.landed & ray.by_chance;
         }
+        // Caustic maps look from the light. What lands where that does not see has no place in them.
+        const LaneMask<F> hidden = ray.landed & !shown(ray);
+        ray.ledger.drop(hidden, ray.ledger.missed);
+        ray.landed = ray.landed & !hidden;
         // A parallel light's path has no beginning.
         const F window = light.window(ray.length);
         ray.ledger.scale(ray.landed, vec3<F>(window), ray.ledger.missed);
@@ -47,6 +52,21 @@ struct TraceExactPhotons {
         return {vec4<F>(ray.position, select(ray.landed, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
                 vec4<F>(total(ray.ledger.started), total(ray.ledger.absorbed), total(ray.ledger.not_followed), total(ray.ledger.correction)),
                 vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f))};
+    }
+
+private:
+    // Whether the light sees the landing place, specular objects aside, and from the side that was landed on.
+    template <class F>
+    LaneMask<F> shown(const ExactTracer::Ray<F>& ray) const {
+        const vec3<F> towards = light.towards(ray.position);
+        LaneMask<F> seen = ray.landed & !ray.unseen & (glm::dot(ray.normal, towards) > F(0.0f));
+        if (lie_open || none(seen)) return seen;
+        const TriangleHierarchyView& hierarchy = tracer.world.hierarchy;
+        const vec3<F> from = view.perspective ? broadcast<F>(view.origin) : ray.position - broadcast<F>(view.forward) * (glm::dot(ray.position - broadcast<F>(view.origin), broadcast<F>(view.forward)) - F(view.near_plane));
+        const F distance = hierarchy.nearest_receiver(from, -towards, seen).distance;
+        // The place is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
+        const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(ray.normal, towards);
+        return seen & (distance + slack >= glm::length(ray.position - from));
     }
 };
 

@@ -22,7 +22,8 @@ struct ExactTracer {
     template <class F>
     struct Ray {
         vec3<F> position, direction;
-        vec3<F> normal{F(0.0f)};  // of the triangle that was landed on
+        vec3<F> normal{F(0.0f)};  // of the triangle that was landed on, on the side of it
+        LaneMask<F> unseen{false};  // landed on a side that nobody sees
         vec3<F> attenuation{F(0.0f)};  // of what the ray is in
         LaneMask<F> active;
         LaneMask<F> landed{false};
@@ -44,10 +45,11 @@ struct ExactTracer {
         const SurfaceOptics<F> optics = world.optics_of<F>(meshes, lit);
         // Where it comes from inside, the light stands in what the mesh is made of.
         const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
-        ray.attenuation = select(glm::dot(ray.direction, plane) > F(0.0f), optics.attenuation, vec3<F>(F(0.0f)));
-        pass_through(ray, lit, hit.distance);
+        const vec3<F> attenuation = select(glm::dot(ray.direction, plane) > F(0.0f), optics.attenuation, vec3<F>(F(0.0f)));
         ray.length = select(lit, hit.distance, ray.length);
         meet(ray, hit, position, optics, 0);
+        // Only now, so that each branch counts its own part of what is absorbed before they part.
+        absorb(ray, lit, attenuation, hit.distance);
         return position;
     }
 
@@ -61,7 +63,7 @@ struct ExactTracer {
             ledger.drop(ray.active & !found, ledger.missed);
             ray.active = found;
             if (none(found)) return;
-            pass_through(ray, found, hit.distance);
+            absorb(ray, found, ray.attenuation, hit.distance);
             ray.length = select(found, ray.length + hit.distance, ray.length);
             const vec3<F> position = world.position(hit);
             const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), found);
@@ -69,7 +71,10 @@ struct ExactTracer {
             if (any(lands)) {
                 ray.landed = ray.landed | lands;
                 ray.position = select(lands, position, ray.position);
-                ray.normal = select(lands, world.normals.template load<F>(hit.triangle).triangle, ray.normal);
+                const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
+                const LaneMask<F> front = glm::dot(ray.direction, plane) < F(0.0f);
+                ray.normal = select(lands, select(front, plane, -plane), ray.normal);
+                ray.unseen = ray.unseen | (lands & !front & (optics.two_sided == F(0.0f)));
             }
             ray.active = found & !lands;
             if (event == bounces) {
@@ -83,11 +88,11 @@ struct ExactTracer {
 
 private:
     template <class F>
-    void pass_through(Ray<F>& ray, LaneMask<F> mask, F distance) const {
-        const LaneMask<F> absorbs = mask & (ray.attenuation.x + ray.attenuation.y + ray.attenuation.z > F(0.0f));
+    static void absorb(Ray<F>& ray, LaneMask<F> mask, const vec3<F>& attenuation, F distance) {
+        const LaneMask<F> absorbs = mask & (attenuation.x + attenuation.y + attenuation.z > F(0.0f));
         if (none(absorbs)) return;
         vec3<F> transmittance;
-        for (int c = 0; c < 3; ++c) transmittance[c] = exp(-ray.attenuation[c] * distance);
+        for (int c = 0; c < 3; ++c) transmittance[c] = exp(-attenuation[c] * distance);
         ray.ledger.scale(absorbs, transmittance, ray.ledger.absorbed);
     }
 

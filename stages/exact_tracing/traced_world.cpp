@@ -24,7 +24,7 @@ void TracedWorld::fill(Executor& executor, const World& world) {
     for (std::int64_t m = 0; m < optics_.size(); ++m) {
         const Material& material = world.material_of(world.meshes[static_cast<std::size_t>(m)]);
         const auto flag = [](bool set) { return set ? 1.0f : 0.0f; };
-        optics_[m] = {flag(material.kind == SurfaceKind::Lambert), flag(material.kind == SurfaceKind::Dielectric), flag(material.thin_walled), material.ior, material.base_color,
+        optics_[m] = {flag(material.kind == SurfaceKind::Lambert), flag(material.two_sided), flag(material.kind == SurfaceKind::Dielectric), flag(material.thin_walled), material.ior, material.base_color,
                       material.thin_walled ? glm::vec3(0.0f) : material.attenuation};
     }
     const TriangleHierarchyView tree = hierarchy_.view();
@@ -39,6 +39,32 @@ void TracedWorld::fill(Executor& executor, const World& world) {
             normals_[i].triangle = mesh.triangles[local].normal;
         }
     });
+}
+
+bool TracedWorld::lies_open(const World& world, const Light& light) {
+    // A triangle whose plane has every receiver and the light on one side hides nothing; a tree would tell more.
+    constexpr std::int64_t few = 64;
+    std::int64_t triangles = 0;
+    for (const Mesh& mesh : world.meshes)
+        if (world.material_of(mesh).kind == SurfaceKind::Lambert) triangles += mesh.indices.size() / 3;
+    if (triangles > few) return false;
+    const float slack = tracing_error * glm::length(world.high - world.low);
+    for (const Mesh& mesh : world.meshes) {
+        const Material& material = world.material_of(mesh);
+        if (material.kind != SurfaceKind::Lambert) continue;
+        for (std::int64_t t = 0; t < mesh.triangles.size(); ++t) {
+            const glm::vec3 corner = mesh.vertices[mesh.indices.data()[3 * t]].position;
+            const float towards_light = light.kind == LightKind::Directional ? -glm::dot(mesh.triangles[t].normal, light.direction) : glm::dot(mesh.triangles[t].normal, light.position - corner);
+            const glm::vec3 normal = material.two_sided && towards_light < 0 ? -mesh.triangles[t].normal : mesh.triangles[t].normal;
+            if (!material.two_sided && towards_light < 0) return false;
+            for (const Mesh& other : world.meshes) {
+                if (world.material_of(other).kind != SurfaceKind::Lambert) continue;
+                for (const WorldVertex<float>& v : other.vertices.span())
+                    if (glm::dot(normal, v.position - corner) < -slack) return false;
+            }
+        }
+    }
+    return true;
 }
 
 }  // namespace nephroid::stages

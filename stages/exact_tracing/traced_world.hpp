@@ -15,6 +15,7 @@ struct TriangleNormals {
 template <class F>
 struct SurfaceOptics {
     F receives;     // 1: Lambert
+    F two_sided;    // 1: a receiver that is seen from behind, too
     F transmits;    // 1: dielectric
     F thin_walled;  // 1
     F ior;
@@ -71,6 +72,8 @@ public:
     [[nodiscard]] Faults build(Executor& executor, const World& world);
     // For vertices that have moved; materials may have changed, too.
     void refit(Executor& executor, const World& world);
+    // Whether no receiver hides any part of another from a light: they are few, flat, and bend round it.
+    static bool lies_open(const World& world, const Light& light);
     TracedWorldView view() const { return {hierarchy_.view(), normals_, optics_.data()}; }
 
 private:

@@ -204,6 +204,8 @@ void TriangleHierarchy::place_triangles(Executor& executor, const World& world) 
             }
             const Mesh& mesh = world.meshes[static_cast<std::size_t>(t.mesh)];
             const std::uint32_t* index = mesh.indices.data() + std::int64_t{3} * (t.number - first_of_mesh_[static_cast<std::size_t>(t.mesh)]);
+            const Material& material = world.material_of(mesh);
+            t.receiver = material.kind != SurfaceKind::Lambert ? 0 : HierarchyTriangle::front | (material.two_sided ? HierarchyTriangle::back : 0);
             for (int c = 0; c < 3; ++c)
                 for (int k = 0; k < 3; ++k) t.corner[c][k] = mesh.vertices[index[c]].position[k];
         }

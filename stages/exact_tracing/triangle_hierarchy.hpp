@@ -29,6 +29,8 @@ struct HierarchyTriangle {
     float corner[3][3];
     std::uint32_t number;  // counted through the meshes in their order: of two that are equally near, the lower one is met
     std::int32_t mesh;
+    std::uint32_t receiver;  // 0: specular; else which of its sides are seen
+    static constexpr std::uint32_t front = 1, back = 2;
 };
 
 // Of a bound that is M away in one coordinate at most, this times M bounds what rounding adds up to, in any coordinate: from
@@ -66,17 +68,28 @@ struct TriangleHierarchyView {
 
     // The nearest triangle along a unit direction, in lanes that are active. Rays start at their origin, itself not counted.
     template <class F>
-    [[gnu::noinline]] Hit<F> nearest(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
-        Hit<F> hit{select(active, F(infinite), F(-infinite)), F(0.0f), F(0.0f), LaneInt<F>(-1)};
+    Hit<F> nearest(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
+        return search<false>(origin, direction, active);
+    }
+    // The nearest receiver that shows a side that is seen.
+    template <class F>
+    Hit<F> nearest_receiver(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
+        return search<true>(origin, direction, active);
+    }
+
+private:
+    template <bool Receivers, class F>
+    [[gnu::noinline]] Hit<F> search(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
+        Hit<F> hit{F(infinite), F(0.0f), F(0.0f), LaneInt<F>(-1)};
         if (empty || none(active)) return hit;
+        hit.distance = select(active, hit.distance, F(-infinite));
         Packet<F> packet(origin, direction, error_at(origin));
-        if (packet.agrees(active)) traverse<true>(packet, hit);
-        else if constexpr (lanes_of<F> > 1) traverse<false>(packet, hit);
+        if (packet.agrees(active)) traverse<Receivers, true>(packet, hit);
+        else if constexpr (lanes_of<F> > 1) traverse<Receivers, false>(packet, hit);
         hit.distance = select(active, hit.distance, F(infinite));
         return hit;
     }
 
-private:
     static constexpr float infinite = std::numeric_limits<float>::infinity();
 
     // Rays as the tests want them.
@@ -171,9 +184,10 @@ private:
 
     // What "a ray meets a triangle" means. The triangle's own box has its say in it: a ray meets what is in a box only between
     // where it enters and leaves that, and so a box that is left out for good reason never held the nearest triangle.
-    template <bool Uniform, class F>
+    template <bool Receivers, bool Uniform, class F>
     void meet(const Packet<F>& p, std::int32_t index, Hit<F>& nearest) const {
         const HierarchyTriangle& t = triangles[index];
+        if (Receivers && t.receiver == 0) return;
         F x[3], y[3], z[3];
         for (int c = 0; c < 3; ++c) {
             F first, second;
@@ -204,6 +218,10 @@ private:
         }
         const F area = u + v + w;
         inside = inside & (area != zero);
+        if constexpr (Receivers) {
+            const LaneMask<F> front = area * p.shear_z > zero;  // corners run counter-clockwise
+            inside = inside & ((front & LaneMask<F>((t.receiver & HierarchyTriangle::front) != 0)) | ((!front) & LaneMask<F>((t.receiver & HierarchyTriangle::back) != 0)));
+        }
         if (none(inside)) return;
         const F scale = F(1.0f) / select(inside, area, F(1.0f)), second = v * scale, third = w * scale;
         const F met = ((u * scale) * z[0] + second * z[1] + third * z[2]) * p.shear_z;
@@ -228,7 +246,7 @@ private:
         return LaneUint<F>(number) < gather(reinterpret_cast<const std::uint32_t*>(triangles) + at, other * words, other >= LaneInt<F>(0));
     }
 
-    template <bool Uniform, class F>
+    template <bool Receivers, bool Uniform, class F>
     void traverse(const Packet<F>& p, Hit<F>& nearest) const {
         struct Waiting {
             F enters;
@@ -258,7 +276,7 @@ private:
                 }
             } else {
                 const std::int32_t first = ~at >> 3, last = first + (~at & 7);
-                for (std::int32_t k = first; k <= last; ++k) meet<Uniform>(p, k, nearest);
+                for (std::int32_t k = first; k <= last; ++k) meet<Receivers, Uniform>(p, k, nearest);
             }
             do {
                 if (waiting == 0) return;

@@ -70,9 +70,12 @@ private:
             const Mesh& mesh = world_.meshes[m];
             if (!specular(world_, mesh)) continue;
             const std::string caustic = "caustics of " + light.name + " by " + mesh.name;
-            if (!receiver_map) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
+            const bool exact = settings_.tracing == Tracing::Exact;
+            if (!receiver_map && exact) leave_out("receivers seen from " + light.name, "light is followed through the triangles");
+            if (!receiver_map && !exact) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
             receiver_map = true;
-            add({.kind = PassKind::CasterLayers, .name = "layers of " + mesh.name + " from " + light.name, .why = "light meets its two sides", .writes = {"object layers", "occluders"}, .light = l, .mesh = m});
+            if (exact) leave_out("layers of " + mesh.name + " from " + light.name, "light is followed through the triangles");
+            else add({.kind = PassKind::CasterLayers, .name = "layers of " + mesh.name + " from " + light.name, .why = "light meets its two sides", .writes = {"object layers", "occluders"}, .light = l, .mesh = m});
             const Material& material = world_.material_of(mesh);
             const bool dielectric = material.kind == SurfaceKind::Dielectric;
             const bool has_inside = dielectric && mesh.closed && !material.thin_walled && settings_.variant != mapping::Variant::Tutorial;
@@ -90,7 +93,7 @@ private:
         const auto with = [&](PassKind kind, const char* what, const char* why, std::vector<std::string> reads, std::vector<std::string> writes) {
             add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = how.light, .mesh = how.mesh, .map = map, .branch = how.branch});
         };
-        with(PassKind::Photons, "photons", "the light is followed to where it lands", {"object layers", "occluders", "receiver map"}, {"photons"});
+        with(PassKind::Photons, "photons", "the light is followed to where it lands", settings_.tracing == Tracing::Exact ? std::vector<std::string>{"triangles"} : std::vector<std::string>{"object layers", "occluders", "receiver map"}, {"photons"});
         with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});
         with(PassKind::CausticReceivers, "receivers", "the map's texels lie on surfaces", {"map view"}, {"map receivers"});
         with(PassKind::SplatPhotons, "splat", "photons are added up", {"photons", "map view"}, {"map flux"});

@@ -7,6 +7,7 @@
 
 #include "pipeline/fp_environment.hpp"
 #include "stages/caustic_view.hpp"
+#include "stages/exact_tracing/exact_photons.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/mapping/vertex_photons.hpp"
 #include "stages/shading/lighting.hpp"
@@ -110,6 +111,7 @@ struct Renderer::Impl {
     LayerPictures caster_layers, lit_layer;
     SolidLayers caster, lit_side;
     Texture occluders;
+    TracedWorld traced;
     std::vector<Texture> photon_positions, photon_fluxes;  // per map
     Texture accounts, losses;
     std::vector<CausticPictures> maps;
@@ -201,6 +203,8 @@ struct Renderer::Impl {
     void draw_layers(const View& view, int m, LayerPictures& to);
     void caster_pass(const Pass& pass);
     void photon_pass(const Pass& pass);
+    void trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
+    void trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
     void caustic_receivers(const Pass& pass);
     void splat(const Pass& pass);
     void resolve(const Pass& pass);
@@ -250,11 +254,15 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     }
     if (!plan.maps.empty()) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
-        receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
-        receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
-        caster_layers = LayerPictures(n, n, settings.solid_layers);
-        lit_layer = LayerPictures(n, n, 1);
-        occluders = target(Format::D32F, n, n, "occluders");
+        if (settings.tracing == Tracing::Exact) {
+            faults.add(traced.build(device.executor(), world));
+        } else {
+            receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
+            receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
+            caster_layers = LayerPictures(n, n, settings.solid_layers);
+            lit_layer = LayerPictures(n, n, 1);
+            occluders = target(Format::D32F, n, n, "occluders");
+        }
         accounts = target(Format::RGBA32F, n, n, "accounts");
         losses = target(Format::RGBA32F, n, n, "losses");
         map_flux = layered(Format::RGBA32F, size, 1, "map flux");
@@ -418,7 +426,7 @@ void Renderer::Impl::caster_pass(const Pass& pass) {
     }
 }
 
-void Renderer::Impl::photon_pass(const Pass& pass) {
+void Renderer::Impl::trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets) {
     const Light& light = world.lights[pass.light];
     mapping::TracePhotons photons;
     photons.tracer.search.solid = caster;
@@ -439,7 +447,6 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
     photons.other_branch_followed = plan.maps[pass.map].other_branch;
     if (plan.maps[pass.map].inside_branch) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
     photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
-    const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
     if (settings.variant == mapping::Variant::Vertices) {
         for (int t = 0; t < 4; ++t) clear(targets[t]);
         const Mesh& mesh = world.meshes[pass.mesh];
@@ -449,6 +456,31 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
     } else {
         draw_screen("photons", photons, targets);
     }
+}
+
+void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets) {
+    const Light& light = world.lights[pass.light];
+    const CausticMapPlan& map = plan.maps[pass.map];
+    TraceExactPhotons photons;
+    photons.tracer.world = traced.view();
+    photons.tracer.bounces = settings.bounces;
+    photons.tracer.branch = pass.branch;
+    if (settings.inner_reflections) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
+    photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !map.inside_branch;
+    photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
+    photons.light = LightSource(light);
+    photons.view = lit_part(light, caster_view(light, world.meshes[pass.mesh]));
+    photons.side = settings.photons;
+    photons.mesh = pass.mesh;
+    photons.other_branch_followed = map.other_branch;
+    photons.lie_open = TracedWorld::lies_open(world, light);
+    draw_screen("photons", photons, targets);
+}
+
+void Renderer::Impl::photon_pass(const Pass& pass) {
+    const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
+    if (settings.tracing == Tracing::Exact) trace_photons_exactly(pass, targets);
+    else trace_photons(pass, targets);
     if (!settings.audit) return;
     Executor& executor = device.executor();
     audit.emitted += sum_channel(executor, accounts, 0, row_sums);

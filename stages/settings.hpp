@@ -5,11 +5,18 @@
 
 namespace nephroid::stages {
 
+// How photons are followed.
+enum class Tracing : int {
+    ImageSpace,  // through pictures of the object and of the receivers from the light
+    Exact,       // through the world's triangles
+};
+
 struct Settings {
     int width = 1024, height = 768;
     int samples_side = 1;  // a pixel is the mean of samples_side^2 samples
     // mapping
     mapping::Variant variant = mapping::Variant::TwoSided;
+    Tracing tracing = Tracing::ImageSpace;
     Intersection intersection = Intersection::Bisection;
     int iterations = 12;
     int photons = 1024;    // per light and object, along an edge; a power of two

@@ -51,7 +51,7 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--technique", technique, "How caustics are made: auto or mapping")->check(CLI::IsMember({"auto", "mapping"}))->capture_default_str();
     c.add_option("--variant", variant, "mapping: two-sided refraction; the tutorial's single one; photons from the object's vertices")
         ->check(CLI::IsMember({"two-sided", "tutorial", "vertices"}))->capture_default_str();
-    c.add_option("--tracing", tracing, "How light is followed")->check(CLI::IsMember({"image-space"}))->capture_default_str();
+    c.add_option("--tracing", tracing, "How light is followed: through pictures from the light; through the triangles, any objects one after the other")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
     c.add_option("--intersection", intersection, "How a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
@@ -68,6 +68,9 @@ void RenderOptions::add_to(CLI::App& c) {
 void RenderOptions::finish(const scenes::Scene& loaded) {
     settings.photons = parse_photons(photons);
     settings.variant = variant == "tutorial" ? stages::mapping::Variant::Tutorial : variant == "vertices" ? stages::mapping::Variant::Vertices : stages::mapping::Variant::TwoSided;
+    settings.tracing = tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
+    if (settings.tracing == stages::Tracing::Exact && settings.variant != stages::mapping::Variant::TwoSided)
+        throw std::runtime_error("--tracing exact: goes with --variant two-sided, not with " + variant);
     settings.intersection = intersection == "newton" ? stages::Intersection::Newton : intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
     while (settings.samples_side * settings.samples_side < samples) ++settings.samples_side;
     picture_size(loaded, settings.width, settings.height);

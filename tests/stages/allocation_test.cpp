@@ -15,12 +15,14 @@ TEST_CASE("thirty frames with a moving light and camera allocate nothing after t
         return;
     }
     for (const char* name : {"glass-sphere", "pool"}) {
-        for (const int threads : {1, 2, 3}) {
+        for (const auto& [tracing, threads] : {std::pair{stages::Tracing::ImageSpace, 1}, {stages::Tracing::ImageSpace, 2}, {stages::Tracing::ImageSpace, 3}, {stages::Tracing::Exact, 1}, {stages::Tracing::Exact, 3}}) {
             const std::string text(name);
             CAPTURE(text);
             CAPTURE(threads);
             Device device({.threads = threads});
-            Rendered first = render(device, scenes::bundled_scene(name), small(96, 72, 128, 128));
+            stages::Settings settings = small(96, 72, 128, 128);
+            settings.tracing = tracing;
+            Rendered first = render(device, scenes::bundled_scene(name), settings);
             stages::World& world = first.built.world;
             const stages::Light light = world.lights[0];
             const stages::Camera camera = world.camera;

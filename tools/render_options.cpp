@@ -17,24 +17,12 @@ namespace nephroid {
 
 namespace {
 
-template <class V>
-struct NamedVariant {
+struct NamedMappingVariant {
     const char* name;
-    V variant;
+    stages::mapping::Variant variant;
 };
-constexpr NamedVariant<stages::mapping::Variant> mapping_variants[] = {
+constexpr NamedMappingVariant mapping_variants[] = {
     {"two-sided", stages::mapping::Variant::TwoSided}, {"tutorial", stages::mapping::Variant::Tutorial}, {"vertices", stages::mapping::Variant::Vertices}};
-constexpr NamedVariant<stages::hierarchical::Variant> hierarchical_variants[] = {
-    {"gather", stages::hierarchical::Variant::Gather},
-    {"constant", stages::hierarchical::Variant::Constant},
-    {"thin-lens", stages::hierarchical::Variant::ThinLens},
-    {"interpolated", stages::hierarchical::Variant::Interpolated},
-    {"hierarchical", stages::hierarchical::Variant::Hierarchical},
-    {"combine-last", stages::hierarchical::Variant::CombineLast},
-    {"combine-all", stages::hierarchical::Variant::CombineAll},
-    {"varying-single", stages::hierarchical::Variant::VaryingSingle},
-    {"varying", stages::hierarchical::Variant::Varying}};
-
 std::vector<std::string> names_of(const auto& variants) {
     std::vector<std::string> names;
     for (const auto& v : variants) names.push_back(v.name);
@@ -42,7 +30,7 @@ std::vector<std::string> names_of(const auto& variants) {
 }
 std::vector<std::string> all_variants() {
     std::vector<std::string> names = names_of(mapping_variants);
-    for (const std::string& name : names_of(hierarchical_variants)) names.push_back(name);
+    for (const std::string& name : names_of(stages::hierarchical::named_variants)) names.push_back(name);
     return names;
 }
 
@@ -80,7 +68,7 @@ void RenderOptions::add_to(CLI::App& c) {
     SceneOptions::add_to(c);
     c.add_option("--technique", technique, "How caustics are made: auto, mapping or hierarchical")->check(CLI::IsMember({"auto", "mapping", "hierarchical"}))->capture_default_str();
     c.add_option("--variant", variant,
-                 "mapping: two-sided refraction (default); the tutorial's single one; photons from the object's vertices. hierarchical: " + joined(names_of(hierarchical_variants)) + " (default)")
+                 "mapping: two-sided refraction (default); the tutorial's single one; photons from the object's vertices. hierarchical: " + joined(names_of(stages::hierarchical::named_variants)) + " (default)")
         ->check(CLI::IsMember(all_variants()));
     c.add_option("--tracing", tracing, "How light is followed")->check(CLI::IsMember({"image-space"}))->capture_default_str();
     c.add_option("--intersection", intersection, "How a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
@@ -114,7 +102,7 @@ void RenderOptions::finish_variant() {
         if (settings.discard_wide_splats) throw std::runtime_error("--discard-wide-splats: --technique " + technique + " has no splats that are too wide");
         return;
     }
-    const stages::hierarchical::Variant v = settings.hierarchical_variant = check(hierarchical_variants);
+    const stages::hierarchical::Variant v = settings.hierarchical_variant = check(stages::hierarchical::named_variants);
     settings.variant = stages::mapping::Variant::TwoSided;
     settings.splat_form = splat_form == "area" ? stages::hierarchical::SplatForm::Area : stages::hierarchical::SplatForm::MaximumDistance;
     constexpr int step = stages::hierarchical::map_size_step;

@@ -1,49 +1,37 @@
-// Hierarchical caustic maps, section 3.2: photons that all fall into one texel of the map become a single one.
+// Hierarchical caustic maps, section 3.2: photons that converge into a texel of the map become a single one.
 //
-// Known differences from the paper: what stands for a node's photons has the sum of their fluxes, where the paper multiplies
-// one by 4^i, which counts photons that are not there; and it lies in their middle. What falls outside the map's own view is
-// not combined: it is little, and the wide map's texels are others.
+// Known differences from the paper: photons converge where they lie within a texel's width and height of each other, not in
+// one and the same texel, so that no line of the grid keeps them apart; what stands for them has the sum of their fluxes, where
+// the paper multiplies one by 4^i, which counts photons that are not there, and lies in the middle. What falls outside the
+// map's own view is not combined: it is little, and the wide map's texels are others.
 #pragma once
 #include "stages/hierarchical_caustic_maps/validity_pyramid.hpp"
 
 namespace nephroid::stages::hierarchical {
 
-// What stands for the photons below a node.
+// What stands for the photons below a node that has some.
 template <class F>
 struct Combined {
-    F x, y;         // the middle of where they land, in texels
-    F count;        // of photons; 0: they do not converge, or there are none
-    vec3<F> flux;   // W
+    vec4<F> box;   // where they land: left, top, right, bottom, in texels
+    vec3<F> flux;  // W
+
+    LaneMask<F> converges() const { return (box.z - box.x <= F(1.0f)) & (box.w - box.y <= F(1.0f)); }
 };
 
 // Puts a node together from its children.
 template <class F>
 struct Combination {
-    F x{0.0f}, y{0.0f}, count{0.0f}, column{0.0f}, row{0.0f};
-    vec3<F> flux{F(0.0f)};
-    LaneMask<F> converges{true};
+    Combined<F> node{vec4<F>(F(1e30f), F(1e30f), F(-1e30f), F(-1e30f)), vec3<F>(F(0.0f))};
 
     // `valid`: it has photons.
     void add(const Combined<F>& c, LaneMask<F> valid) {
-        const F its_column = floor(c.x), its_row = floor(c.y);
-        const LaneMask<F> first = valid & (count == F(0.0f));
-        column = select(first, its_column, column);
-        row = select(first, its_row, row);
-        converges = converges & ((!valid) | ((c.count > F(0.0f)) & (its_column == column) & (its_row == row)));
-        x = x + select(valid, c.x * c.count, F(0.0f));
-        y = y + select(valid, c.y * c.count, F(0.0f));
-        count = count + select(valid, max(c.count, F(1.0f)), F(0.0f));
-        flux = flux + select(valid, c.flux, vec3<F>(F(0.0f)));
-    }
-    // As targets: (x, y, count, 0), flux.
-    std::array<vec4<F>, 2> result() const {
-        const LaneMask<F> combined = converges & (count > F(0.0f));
-        const F inverse = F(1.0f) / max(count, F(1.0f)), none_there(0.0f);
-        return {vec4<F>(select(combined, x * inverse, none_there), select(combined, y * inverse, none_there), select(combined, count, none_there), none_there), vec4<F>(select(combined, flux, vec3<F>(none_there)), none_there)};
+        const vec4<F>& b = node.box;
+        node.box = select(valid, vec4<F>(min(b.x, c.box.x), min(b.y, c.box.y), max(b.z, c.box.z), max(b.w, c.box.w)), b);
+        node.flux = node.flux + select(valid, c.flux, vec3<F>(F(0.0f)));
     }
 };
 
-// The first level with its validity. Targets: MarkPhotons'; places; fluxes.
+// The first level with its validity. Targets: MarkPhotons'; boxes; fluxes.
 struct CombinePhotons {
     MarkPhotons mark;
     Texture2DView<Format::RGBA32F> fluxes;
@@ -51,34 +39,31 @@ struct CombinePhotons {
     std::array<vec4<F>, 3> operator()(const PixelInput<F>& pixel) const {
         const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
         const LaneUint<F> bits = mark.children<F>(x, y);
-        Combination<F> node;
+        Combination<F> all;
         for (int k = 0; k < 4; ++k) {
             const LaneInt<F> column = child_column<F>(x, k), row = child_row<F>(y, k);
             const vec3<F> position(mark.focus.positions.fetch<F>(column, row));
             const PhotonPlacement::Place<F> at = mark.focus.place(position);
-            node.add({at.x, at.y, F(1.0f), vec3<F>(fluxes.fetch<F>(column, row)) * mark.focus.share(position)}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
+            all.add({vec4<F>(at.x, at.y, at.x, at.y), vec3<F>(fluxes.fetch<F>(column, row)) * mark.focus.share(position)}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
         }
-        const auto [place, flux] = node.result();
-        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), place, flux};
+        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), all.node.box, vec4<F>(all.node.flux, F(0.0f))};
     }
 };
 
 // A further level, from the one below.
 struct CombineNodes {
     MarkNodes mark;
-    Texture2DView<Format::RGBA32F> places, fluxes;
+    Texture2DView<Format::RGBA32F> boxes, fluxes;
     template <class F>
     std::array<vec4<F>, 3> operator()(const PixelInput<F>& pixel) const {
         const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
         const LaneUint<F> bits = mark.children<F>(x, y);
-        Combination<F> node;
+        Combination<F> all;
         for (int k = 0; k < 4; ++k) {
             const LaneInt<F> column = child_column<F>(x, k), row = child_row<F>(y, k);
-            const vec4<F> place = places.fetch<F>(column, row, mark.below);
-            node.add({place.x, place.y, place.z, vec3<F>(fluxes.fetch<F>(column, row, mark.below))}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
+            all.add({boxes.fetch<F>(column, row, mark.below), vec3<F>(fluxes.fetch<F>(column, row, mark.below))}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
         }
-        const auto [place, flux] = node.result();
-        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), place, flux};
+        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), all.node.box, vec4<F>(all.node.flux, F(0.0f))};
     }
 };
 

@@ -27,7 +27,7 @@ PhotonGather::PhotonGather(Variant variant, int photons) : variant_(variant), si
     pyramid_ = level_textures(Format::R32U, "validity pyramid");
     if (!merges(variant)) return;
     combined_ = Buffer<Node<float>>(all / 4, "combined photons");
-    places_ = level_textures(Format::RGBA32F, "places of combined photons");
+    boxes_ = level_textures(Format::RGBA32F, "boxes of combined photons");
     fluxes_ = level_textures(Format::RGBA32F, "fluxes of combined photons");
 }
 
@@ -36,9 +36,9 @@ void PhotonGather::build_pyramid(PassDraws& draws, const PhotonPlacement& focus,
     for (int mip = 0; mip < top_; ++mip) {
         // Only combine-all asks for what converges above the last level.
         if (merges(variant_) && (mip == 0 || variant_ == Variant::CombineAll)) {
-            const std::array<TargetView, max_render_targets> targets = {pyramid_.mip(mip), places_.mip(mip), fluxes_.mip(mip)};
+            const std::array<TargetView, max_render_targets> targets = {pyramid_.mip(mip), boxes_.mip(mip), fluxes_.mip(mip)};
             if (mip == 0) draws.draw_screen("validity of photons", CombinePhotons{photons, fluxes}, targets);
-            else draws.draw_screen("validity of nodes", CombineNodes{{pyramid_, mip - 1}, places_, fluxes_}, targets);
+            else draws.draw_screen("validity of nodes", CombineNodes{{pyramid_, mip - 1}, boxes_, fluxes_}, targets);
         } else if (mip == 0) {
             draws.draw_screen("validity of photons", photons, {pyramid_.mip(mip)});
         } else {
@@ -60,7 +60,7 @@ void PhotonGather::descend(PassDraws& draws, bool wide) {
         if (merges(variant_) && !wide && (level == 1 || variant_ == Variant::CombineAll)) {
             call.stream_out[1] = StreamTarget(combined_, combined_any);
             combined_any = true;
-            const VisitOrCombine combine{visit, places_};
+            const VisitOrCombine combine{visit, boxes_};
             if (level == top_) draws.draw(Program{RootNode{level}, combine}, state, call);
             else draws.draw(Program{SameNode{}, combine}, state, call);
         } else if (level == top_) {
@@ -91,7 +91,7 @@ void PhotonGather::splat(PassDraws& draws, const PhotonPlacement& placement, con
     if (variant_ == Variant::Interpolated) return draws.draw(Program{InterpolateSplats{transform}, DepositInterpolated{}}, state, {.vertices = found, .render_targets = {flux}});
     draws.draw(Program{transform, DepositSplat{}}, state, {.vertices = found, .render_targets = {flux}});
     if (merges(variant_) && !placement.wide && top_ > 0)
-        draws.draw(Program{TransformCombined{places_, fluxes_, size.one_size, placement.map_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
+        draws.draw(Program{TransformCombined{boxes_, fluxes_, size.one_size, placement.map_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
 }
 
 void PhotonGather::count_discarded(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const Texture& accounts) const {

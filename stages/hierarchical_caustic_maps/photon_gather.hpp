@@ -24,15 +24,16 @@ public:
     // Sums the levels of a layer down to the two finest.
     static void sum_levels(PassDraws& draws, const Texture& flux, int layer, int levels);
 
-    // For tests: what the last traversal found of the map's own photons.
-    const Buffer<Node<float>>& listed() const { return photons_[0]; }
+    // For tests: what the last traversal found for the map's own view or the wide one; combined nodes aside.
+    const Buffer<Node<float>>& listed(bool wide) const { return photons_[wide ? 1 : 0]; }
+    const Buffer<Node<float>>& combined() const { return combined_; }
 
 private:
     void descend(PassDraws& draws, bool wide);
 
     Variant variant_ = Variant::Varying;
     int side_ = 0, top_ = 0;  // the pyramid's level of 16 x 16 nodes; the photons are level 0
-    Texture pyramid_, places_, fluxes_;  // mip level l is the pyramid's level l + 1
+    Texture pyramid_, boxes_, fluxes_;  // mip level l is the pyramid's level l + 1
     Buffer<Node<float>> nodes_[2];       // of the level that is visited, and of the next one
     Buffer<Node<float>> photons_[2];     // of the map's own view, and of the wide map
     Buffer<Node<float>> combined_;

@@ -81,16 +81,17 @@ struct GatherPhotons {
 
 // Nodes whose photons are combined (section 3.2).
 struct TransformCombined {
-    Texture2DView<Format::RGBA32F> places, fluxes;
+    Texture2DView<Format::RGBA32F> boxes, fluxes;
     float one_size;
     int map_size;
     template <class F>
     PhotonSplat<F> operator()(const Node<F>& node) const {
         const LaneInt<F> x = node.x(), y = node.y(), level = node.level() - LaneInt<F>(1);
-        const vec4<F> place = places.fetch<F>(x, y, level);
+        const vec4<F> box = boxes.fetch<F>(x, y, level);
+        const F middle_x = (box.x + box.z) * F(0.5f), middle_y = (box.y + box.w) * F(0.5f);
         const F side(static_cast<float>(map_size)), to_clip(2.0f / static_cast<float>(map_size));
-        const F sum = mask_sum(place.x, F(one_size), side) * mask_sum(place.y, F(one_size), side);
-        return {vec4<F>(place.x * to_clip - F(1.0f), F(1.0f) - place.y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), vec3<F>(fluxes.fetch<F>(x, y, level)) * (F(1.0f) / sum)};
+        const F sum = mask_sum(middle_x, F(one_size), side) * mask_sum(middle_y, F(one_size), side);
+        return {vec4<F>(middle_x * to_clip - F(1.0f), F(1.0f) - middle_y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), vec3<F>(fluxes.fetch<F>(x, y, level)) * (F(1.0f) / sum)};
     }
 };
 

@@ -56,13 +56,13 @@ struct VisitOrCombine {
     static constexpr auto input = Topology::PointList, output = Topology::PointList;
     static constexpr int max_vertices = 4;
     VisitChildren visit;
-    Texture2DView<Format::RGBA32F> places;
+    Texture2DView<Format::RGBA32F> boxes;
 
     template <class F>
     void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
         const LaneInt<F> x = in[0].x(), y = in[0].y();
-        const LaneMask<F> converges = places.fetch<F>(x, y, visit.level - 1).z > F(0.0f);
         const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
+        const LaneMask<F> converges = ((bits & LaneUint<F>(0xfu)) != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(x, y, visit.level - 1), {}}.converges();
         for (int k = 0; k < 4; ++k)
             out.template emit<0>(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1), ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !converges);
         out.template emit<1>(in[0], converges);

@@ -16,6 +16,14 @@ enum class Variant : int {
     Varying,        // section 3.3: in the level that suits their width
 };
 
+struct NamedVariant {
+    const char* name;
+    Variant variant;
+};
+inline constexpr NamedVariant named_variants[] = {{"gather", Variant::Gather},             {"constant", Variant::Constant},        {"thin-lens", Variant::ThinLens},
+                                                  {"interpolated", Variant::Interpolated}, {"hierarchical", Variant::Hierarchical}, {"combine-last", Variant::CombineLast},
+                                                  {"combine-all", Variant::CombineAll},    {"varying-single", Variant::VaryingSingle}, {"varying", Variant::Varying}};
+
 // How wide a splat is that follows its photon's neighbours (section 3.3).
 enum class SplatForm : int {
     MaximumDistance,  // the farther of the neighbours along a row and a column

@@ -96,7 +96,11 @@ private:
         with(PassKind::Photons, "photons", "the light is followed to where it lands", settings_.tracing == Tracing::Exact ? std::vector<std::string>{"triangles"} : std::vector<std::string>{"object layers", "occluders", "receiver map"}, {"photons"});
         with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});
         with(PassKind::CausticReceivers, "receivers", "the map's texels lie on surfaces", {"map view"}, {"map receivers"});
-        with(PassKind::SplatPhotons, "splat", "photons are added up", {"photons", "map view"}, {"map flux"});
+        const bool listed = settings_.technique == Technique::Hierarchical && hierarchical::traverses(settings_.hierarchical_variant);
+        if (listed && hierarchical::has_pyramid(settings_.hierarchical_variant, settings_.photons))
+            with(PassKind::ValidityPyramid, "validity pyramid", "photons that are not there are passed over together", {"photons", "map view"}, {"validity pyramid"});
+        if (listed) with(PassKind::TraversePhotons, "traversal", "photons that are there are listed", {"validity pyramid"}, {"photon list"});
+        with(PassKind::SplatPhotons, "splat", "photons are added up", listed ? std::vector<std::string>{"photons", "photon list", "map view"} : std::vector<std::string>{"photons", "map view"}, {"map flux"});
         with(PassKind::ResolveCaustic, "resolve", "flux becomes irradiance", {"map flux", "map receivers"}, {"caustic map"});
         with(PassKind::CausticLight, "shade", "receivers are lit by the caustic", {"points", "caustic map"}, {"caustic"});
     }

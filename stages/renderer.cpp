@@ -6,10 +6,14 @@
 #include <span>
 
 #include "pipeline/fp_environment.hpp"
+#include "stages/caustic_map/irradiance.hpp"
 #include "stages/caustic_view.hpp"
 #include "stages/exact_tracing/exact_photons.hpp"
+#include "stages/hierarchical_caustic_maps/photon_gather.hpp"
+#include "stages/hierarchical_caustic_maps/resolve_levels.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/mapping/vertex_photons.hpp"
+#include "stages/pass_draws.hpp"
 #include "stages/shading/lighting.hpp"
 #include "stages/shading/seen_through.hpp"
 
@@ -28,8 +32,8 @@ int log2_of(int n) {
 Texture target(Format format, int width, int height, const char* name, int layers = 1) {
     return Texture({.format = format, .width = width, .height = height, .layers = layers, .kind = layers > 1 ? TextureKind::Texture2DArray : TextureKind::Texture2D, .name = name});
 }
-Texture layered(Format format, int size, int layers, const char* name) {
-    return Texture({.format = format, .width = size, .height = size, .layers = layers, .kind = TextureKind::Texture2DArray, .name = name});
+Texture layered(Format format, int size, int layers, const char* name, int levels = 1) {
+    return Texture({.format = format, .width = size, .height = size, .layers = layers, .mip_levels = levels, .kind = TextureKind::Texture2DArray, .name = name});
 }
 
 // Points to be shaded: what the eye sees first, through something, and in something.
@@ -72,7 +76,6 @@ enum class Sides {
     Seen,   // and are seen from behind, and lit by what is bent round them, only if their material says so
     Outer,  // of closed meshes
 };
-PipelineState screen_state(const char* name) { return state(name, CullMode::None, depth_off); }
 
 double sum_channel(Executor& executor, const Texture& texture, int channel, std::vector<double>& rows) {
     executor.for_each(texture.height(), [&](int y, int) {
@@ -88,17 +91,14 @@ double sum_channel(Executor& executor, const Texture& texture, int channel, std:
 
 }  // namespace
 
-struct Renderer::Impl {
-    Device& device;
+struct Renderer::Impl : PassDraws {
     const World& world;
     Settings settings;
     FramePlan plan;
     std::vector<PassRecord> records;
     EnergyAudit audit;
-    Faults faults, frame_faults;
-    Observer* observer = nullptr;
+    Faults faults;
     ProgressListener* listener = nullptr;
-    PipelineStatistics statistics;  // of the pass that runs
 
     int width, height;  // of the samples
     float reach;
@@ -117,6 +117,7 @@ struct Renderer::Impl {
     std::vector<CausticPictures> maps;
     Texture map_flux, map_sides, wide_flux, wide_sides, map_accounts, wide_accounts;
     std::vector<Buffer<mapping::VertexArea<float>>> vertex_areas;  // per mesh; variant Vertices
+    hierarchical::PhotonGather gather;
     CausticViewFitter fitter;
     std::vector<double> row_sums;
 
@@ -124,20 +125,6 @@ struct Renderer::Impl {
 
     // ---- drawing
 
-    template <class P>
-    void draw(const P& program, const PipelineState& s, DrawCall call) {
-        call.observer = observer;
-        const DrawResult r = device.draw(program, s, call);
-        frame_faults.add(r.faults);
-        statistics += r.statistics;
-    }
-    void clear(const TargetView& view, const glm::vec4& value = glm::vec4(0.0f)) { frame_faults.add(device.clear(view, value)); }
-    template <class PS>
-    void draw_screen(const char* name, const PS& shader, const std::array<TargetView, max_render_targets>& targets, const BlendState& blend = blend_opaque) {
-        PipelineState s = screen_state(name);
-        s.blend.fill(blend);
-        draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = targets});
-    }
     bool specular(int mesh) const { return world.material_of(world.meshes[mesh]).kind != SurfaceKind::Lambert; }
     Texture2DView<Format::RGBA8Srgb> texture_of(const Material& m) const {
         return m.texture >= 0 ? Texture2DView<Format::RGBA8Srgb>(world.textures[m.texture]) : Texture2DView<Format::RGBA8Srgb>();
@@ -206,7 +193,11 @@ struct Renderer::Impl {
     void trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
     void trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
     void caustic_receivers(const Pass& pass);
+    PhotonPlacement placement(const Pass& pass, bool wide) const;
+    TargetView flux_target(const Light& light, bool wide) const;
     void splat(const Pass& pass);
+    void splat_sprites(const Pass& pass, bool wide);
+    void splat_hierarchical(const Pass& pass, bool wide);
     void resolve(const Pass& pass);
     void surface_points();
     void hide_behind();
@@ -220,11 +211,12 @@ struct Renderer::Impl {
     ReceiverMap light_receivers(const Light& light) const;
     SolidLayers solid(const View& view, int m, const LayerPictures& from) const;
     SpecularMaterial specular_material(int m) const;
+    int map_levels() const { return settings.technique == Technique::Hierarchical ? hierarchical::levels_of(settings.hierarchical_variant) : 1; }
     int wide_layers(const Light& light) const { return light.kind == LightKind::Directional ? 1 : 6; }
 };
 
 Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
-    : device(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
+    : PassDraws(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
     const bool any_specular = std::any_of(world.meshes.begin(), world.meshes.end(), [&](const Mesh& m) { return world.material_of(m).kind != SurfaceKind::Lambert; });
     reach = std::max(glm::length(world.high - world.low), 1e-6f);
     // Lights may stand outside the bounds of what they light.
@@ -265,9 +257,10 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         }
         accounts = target(Format::RGBA32F, n, n, "accounts");
         losses = target(Format::RGBA32F, n, n, "losses");
-        map_flux = layered(Format::RGBA32F, size, 1, "map flux");
+        const int levels = map_levels();
+        map_flux = layered(Format::RGBA32F, size, 1, "map flux", levels);
         map_sides = layered(Format::RGBA32F, size, 1, "map receivers");
-        wide_flux = layered(Format::RGBA32F, wide, 6, "wide map flux");
+        wide_flux = layered(Format::RGBA32F, wide, 6, "wide map flux", levels);
         wide_sides = layered(Format::RGBA32F, wide, 6, "wide map receivers");
         map_accounts = target(Format::RGBA32F, size, size, "map accounts");
         wide_accounts = target(Format::RGBA32F, wide, wide, "wide map accounts");
@@ -280,6 +273,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
             photon_positions.push_back(target(Format::RGBA32F, n, n, "photon positions"));
             photon_fluxes.push_back(target(Format::RGBA32F, n, n, "photon fluxes"));
         }
+        if (settings.technique == Technique::Hierarchical) gather = hierarchical::PhotonGather(settings.hierarchical_variant, n);
         row_sums.resize(static_cast<std::size_t>(std::max(n, size)));
     }
     if (settings.variant == mapping::Variant::Vertices) {
@@ -296,6 +290,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
             vertex_areas.push_back(std::move(areas));
         }
     }
+    if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
 }
 
@@ -499,7 +494,7 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
         clear(sides);
         clear(depth);
         draw_meshes(state("map receivers", CullMode::None, depth_greater), Sides::Seen, view, {sides}, depth, [&](int m) { return !specular(m); },
-                    [&](int m) { return mapping::StoreReceiverSide{world.meshes[m].triangles, view, m}; });
+                    [&](int m) { return StoreReceiverSide{world.meshes[m].triangles, view, m}; });
     };
     receivers(map.fit.view, map_sides.mip(), map.depth.mip());
     if (!map.fit.outside) return;
@@ -508,33 +503,48 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
         receivers(light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], wide_sides.mip(0, layer), map.wide_depth.mip(0, layer));
 }
 
-void Renderer::Impl::splat(const Pass& pass) {
+PhotonPlacement Renderer::Impl::placement(const Pass& pass, bool wide) const {
     const Light& light = world.lights[pass.light];
+    return {photon_positions[pass.map], maps[pass.map].fit.view, wide, light.kind != LightKind::Directional, cube_views(light.position), parallel_view(light), wide ? settings.map_size / 2 : settings.map_size};
+}
+
+// All levels of a map's flux.
+TargetView Renderer::Impl::flux_target(const Light& light, bool wide) const {
+    return wide ? TargetView{&wide_flux, 0, map_levels(), 0, wide_layers(light)} : TargetView{&map_flux, 0, map_levels(), 0, 1};
+}
+
+void Renderer::Impl::splat(const Pass& pass) {
     const CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
-    mapping::PlacePhoton place;
-    place.positions = photon_positions[pass.map];
-    place.fluxes = photon_fluxes[pass.map];
-    place.log2_side = log2_of(settings.photons);
-    place.focus = map.fit.view;
-    place.cube = light.kind != LightKind::Directional;
-    place.faces = cube_views(light.position);
-    place.parallel = parallel_view(light);
-    place.map_size = settings.map_size;
+    for (const bool wide : {false, true}) {
+        if (wide && !map.fit.outside) return;
+        if (settings.technique == Technique::Hierarchical) splat_hierarchical(pass, wide);
+        else splat_sprites(pass, wide);
+    }
+}
+
+void Renderer::Impl::splat_sprites(const Pass& pass, bool wide) {
     // Vertices of a mesh have no neighbours in the buffer.
-    place.sprite_size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
+    const float size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
+    const mapping::PlacePhoton place{placement(pass, wide), photon_fluxes[pass.map], log2_of(settings.photons), size};
     PipelineState s = screen_state("splat photons");
     s.topology = Topology::PointList;
     s.blend = {blend_additive};
     s.rasterizer.depth_clip = false;
-    const VertexSource all = vertex_count(std::int64_t{settings.photons} * settings.photons);
-    clear(map_flux.mip());
-    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {map_flux.mip()}});
-    if (!map.fit.outside) return;
-    place.wide = true;
-    place.map_size = settings.map_size / 2;
-    clear(wide_flux.layers(0, wide_layers(light)));
-    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {wide_flux.layers(0, wide_layers(light))}});
+    const TargetView flux = flux_target(world.lights[pass.light], wide);
+    clear(flux);
+    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = vertex_count(std::int64_t{settings.photons} * settings.photons), .render_targets = {flux}});
+}
+
+void Renderer::Impl::splat_hierarchical(const Pass& pass, bool wide) {
+    const PhotonPlacement place = placement(pass, wide);
+    hierarchical::SplatSize size{settings.hierarchical_variant, settings.splat_form, settings.sprite_size, settings.splat_threshold, map_levels(), settings.discard_wide_splats && hierarchical::may_discard(settings.hierarchical_variant),
+                                 {lit_side, specular_material(pass.mesh), pass.branch == Branch::Reflected}};
+    if (size.one_size == 0) size.one_size = hierarchical::default_size(settings.hierarchical_variant, place.map_size, settings.photons);
+    gather.splat(*this, place, photon_fluxes[pass.map], size, flux_target(world.lights[pass.light], wide));
+    if (!settings.audit || !size.discards_wide) return;
+    gather.count_discarded(*this, place, photon_fluxes[pass.map], size, accounts);
+    audit.discarded += sum_channel(device.executor(), accounts, 0, row_sums);
 }
 
 void Renderer::Impl::resolve(const Pass& pass) {
@@ -543,7 +553,14 @@ void Renderer::Impl::resolve(const Pass& pass) {
     if (map.fit.empty) return;
     const auto resolve_layer = [&](const Texture& flux, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
         const Texture& sums = size == settings.map_size ? map_accounts : wide_accounts;
-        draw_screen("resolve caustic map", mapping::ResolveIrradiance{flux, sides, depth, view, layer, size}, {irradiance.mip(0, layer), sums.mip()});
+        const ReceiverTexels receivers{sides, depth, view, layer, size};
+        const std::array<TargetView, max_render_targets> targets = {irradiance.mip(0, layer), sums.mip()};
+        if (map_levels() > 1) {
+            hierarchical::PhotonGather::sum_levels(*this, flux, layer, map_levels());
+            draw_screen("resolve caustic map", hierarchical::ResolveLevels{{flux, 1, layer}, receivers}, targets);
+        } else {
+            draw_screen("resolve caustic map", ResolveIrradiance{flux, receivers}, targets);
+        }
         if (!settings.audit) return;
         audit.deposited += sum_channel(device.executor(), sums, 0, row_sums);
         audit.beside += sum_channel(device.executor(), sums, 1, row_sums);
@@ -665,6 +682,12 @@ void Renderer::Impl::run(const Pass& pass) {
             maps[pass.map].fit = fitter.fit(device.executor(), photon_positions[pass.map], photon_fluxes[pass.map], world.lights[pass.light], scene_centre(), reach);
             return;
         case PassKind::CausticReceivers: return caustic_receivers(pass);
+        case PassKind::ValidityPyramid:
+            if (!maps[pass.map].fit.empty) gather.build_pyramid(*this, placement(pass, false), photon_fluxes[pass.map]);
+            return;
+        case PassKind::TraversePhotons:
+            if (!maps[pass.map].fit.empty) gather.traverse(*this, maps[pass.map].fit.outside);
+            return;
         case PassKind::SplatPhotons: return splat(pass);
         case PassKind::ResolveCaustic: return resolve(pass);
         case PassKind::SurfacePoints: return surface_points();

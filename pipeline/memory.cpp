@@ -1,5 +1,6 @@
 #include "pipeline/memory.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 
@@ -14,9 +15,13 @@ constexpr std::size_t cache_line = 64;
 #if defined(__linux__)
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 #endif
+std::atomic<std::size_t> held{0};
 }  // namespace
 
+std::size_t host_memory_held() { return held; }
+
 void HostMemory::release() {
+    held -= size_;
 #if defined(__linux__)
     if (mapped_) munmap(data_, mapped_);
     else
@@ -33,7 +38,7 @@ bool HostMemory::allocate(std::size_t bytes) {
     const std::size_t rounded = (bytes + cache_line - 1) / cache_line * cache_line;
     data_ = static_cast<std::byte*>(std::aligned_alloc(cache_line, rounded));
     if (!data_) return false;
-    size_ = rounded;
+    held += size_ = rounded;
     return true;
 }
 
@@ -49,7 +54,7 @@ bool HostMemory::allocate_zeroed(std::size_t bytes) {
         if (aligned > start) munmap(block, aligned - start);
         if (aligned < start + huge_page) munmap(reinterpret_cast<void*>(aligned + rounded), start + huge_page - aligned);
         data_ = reinterpret_cast<std::byte*>(aligned);
-        size_ = mapped_ = rounded;
+        held += size_ = mapped_ = rounded;
         static_cast<void>(madvise(data_, rounded, MADV_HUGEPAGE));
         return true;
     }

@@ -39,4 +39,7 @@ private:
     std::size_t mapped_ = 0;  // bytes from the system directly, 0: from the heap
 };
 
+// Held by all HostMemory of this process: textures, buffers, devices' arenas.
+std::size_t host_memory_held();
+
 }  // namespace nephroid

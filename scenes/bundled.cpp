@@ -132,8 +132,8 @@ Scene pool() {
     Scene scene;
     const int tiles = add_lambert(scene, "tiles", {0.75f, 0.8f, 0.82f});
     scene.meshes.push_back(make_room("basin", tiles, {-1.5f, -1.0f, -1.0f}, {1.5f, 0.25f, 1.0f}, {.top = false}));
-    // One interface and no bottom. It goes a millimetre into the walls, so that no light slips past.
-    scene.meshes.push_back(make_water("water", add_water(scene), {-1.501f, -1.001f}, {1.501f, 1.001f}, 0.0f, ripples, 160));
+    // One interface and no bottom.
+    scene.meshes.push_back(make_water("water", add_water(scene), {-1.5f, -1.0f}, {1.5f, 1.0f}, 0.0f, ripples, 160));
     add_sun(scene, {0.35f, -1.0f, -0.25f}, 3.5f);
     add_camera(scene, {0.0f, 2.7f, 1.7f}, {0.0f, -0.6f, -0.05f}, 0.75f);
     return scene;
@@ -170,7 +170,7 @@ Scene sphere_above_water() {
     Scene scene;
     const int tiles = add_lambert(scene, "tiles", white);
     scene.meshes.push_back(make_room("basin", tiles, {-2.0f, -0.8f, -2.0f}, {2.0f, 0.1f, 2.0f}, {.top = false}));
-    scene.meshes.push_back(make_water("water", add_water(scene), {-2.001f, -2.001f}, {2.001f, 2.001f}, 0.0f, ripples, 160));
+    scene.meshes.push_back(make_water("water", add_water(scene), {-2.0f, -2.0f}, {2.0f, 2.0f}, 0.0f, ripples, 160));
     scene.meshes.push_back(make_sphere("sphere", add_glass(scene, "glass", 1.5f), {-0.1f, 0.55f, 0.0f}, 0.4f, 5));
     add_point_light(scene, {-1.3f, 3.0f, 0.4f}, 60.0f);
     add_camera(scene, {0.7f, 2.6f, 2.6f}, {0.15f, -0.3f, 0.0f}, 0.7f);

@@ -44,7 +44,7 @@ struct Mesh {
     Buffer<TriangleFacts<float>> triangles;
     IndexBuffer indices;
     glm::vec3 low{0.0f}, high{0.0f};  // bounds
-    bool closed = true;               // every edge has two triangles: there is an inside
+    bool closed = true;               // hardly anything of the surface is missing: there is an inside
 };
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional };

@@ -69,14 +69,11 @@ void run(ReferenceArguments& a) {
 
     PictureData picture = tracer.picture();
     if (a.errors) append_channels(picture, tracer.error());
-    const double noise = tracer.noise(), caustic_noise = tracer.caustic_noise();
-    picture.metadata = {{"nephroid:photons", std::to_string(tracer.photons())},
-                        {"nephroid:noise", printf_text("%.4g", noise)},
-                        {"nephroid:caustic-noise", printf_text("%.4g", caustic_noise)}};
+    picture.metadata = tracer.metadata();
     if (ending == ".png" || ending == ".hdr") std::fprintf(stderr, "nephroid: %s holds the picture alone; EXR and TIFF have its terms and the mask, too\n", a.out.c_str());
     write_picture(a.out, picture);
     if (!a.resume.empty()) write_whole_file(a.resume, tracer.state());
-    std::printf("%.4g photons in %d passes; relMSE left by noise: %.3g, in caustic pixels %.3g\n", static_cast<double>(tracer.photons()), tracer.passes(), noise, caustic_noise);
+    std::printf("%.4g photons in %d passes; relMSE left by noise: %.3g, in caustic pixels %.3g\n", static_cast<double>(tracer.photons()), tracer.passes(), tracer.noise(), tracer.caustic_noise());
 }
 
 }  // namespace

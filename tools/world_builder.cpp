@@ -1,10 +1,14 @@
 #include "tools/world_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "pipeline/math.hpp"
 #include "pipeline/mipmaps.hpp"
@@ -54,45 +58,75 @@ stages::Material build_material(const scenes::Material& m, std::vector<std::stri
     return r;
 }
 
-// Flat but for rounding: it has no two sides.
-bool has_area(const scenes::Mesh& mesh, std::size_t triangle) {
-    const glm::vec3 a = mesh.positions[mesh.indices[triangle]], u = mesh.positions[mesh.indices[triangle + 1]] - a, v = mesh.positions[mesh.indices[triangle + 2]] - a;
-    const float longest = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(u - v, u - v)});
-    constexpr float least = 1e-5f;
-    return glm::length(glm::cross(u, v)) > least * longest;
-}
-
-// A mesh is closed if hardly an edge has only one triangle; corners at one place are one corner. Triangles without area close
-// the gaps between others, or lie about with edges of their own: they count in one of two ways.
-bool is_closed(const scenes::Mesh& mesh, bool with_flat) {
+// The edges of a mesh that have one triangle only, as that one goes round; corners at one place are one corner.
+struct Edge {
+    std::uint32_t from, to;
+};
+std::vector<Edge> open_edges(const scenes::Mesh& mesh) {
     using Place = std::tuple<float, float, float>;
     std::map<Place, std::uint32_t> places;
-    std::vector<std::uint32_t> place_of;
-    for (const glm::vec3& p : mesh.positions) place_of.push_back(places.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(places.size())).first->second);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-        for (int k = 0; k < 3 && (with_flat || has_area(mesh, t)); ++k) {
-            const std::uint32_t a = place_of[mesh.indices[t + k]], b = place_of[mesh.indices[t + (k + 1) % 3]];
-            if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b));
+    std::vector<std::uint32_t> place_of;  // the first vertex there
+    for (std::uint32_t k = 0; k < mesh.positions.size(); ++k) place_of.push_back(places.try_emplace({mesh.positions[k].x, mesh.positions[k].y, mesh.positions[k].z}, k).first->second);
+    std::vector<Edge> edges;
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
+        for (int k = 0; k < 3; ++k) {
+            const Edge e{place_of[mesh.indices[t + k]], place_of[mesh.indices[t + (k + 1) % 3]]};
+            if (e.from != e.to) edges.push_back(e);
         }
+    const auto ends = [](const Edge& e) { return std::minmax(e.from, e.to); };
+    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return std::pair(ends(a)) < std::pair(ends(b)); });
+    std::vector<Edge> open;
+    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+        while (j < edges.size() && std::pair(ends(edges[j])) == std::pair(ends(edges[i]))) ++j;
+        if (j - i == 1) open.push_back(edges[i]);
     }
-    std::sort(edges.begin(), edges.end());
-    std::size_t open = 0, all = 0;
-    for (std::size_t i = 0; i < edges.size(); ++all) {
-        std::size_t j = i;
-        while (j < edges.size() && edges[j] == edges[i]) ++j;
-        open += j - i == 1;
-        i = j;
+    return open;
+}
+
+// A mesh is closed if hardly anything of its surface is missing: the areas that its holes would have, as vectors, against
+// its own. Slits have none: seams whose two sides rounding has moved apart, and triangles without area.
+bool is_closed(const scenes::Mesh& mesh) {
+    const std::vector<Edge> open = open_edges(mesh);
+    // Edges that hang together are one hole's, and so are those that lie side by side.
+    std::vector<std::uint32_t> next(mesh.positions.size());
+    std::iota(next.begin(), next.end(), 0u);
+    const auto hole_of = [&](std::uint32_t k) {
+        while (next[k] != k) k = next[k] = next[next[k]];
+        return k;
+    };
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const glm::vec3& p : mesh.positions) low = glm::min(low, glm::dvec3(p)), high = glm::max(high, glm::dvec3(p));
+    const double apart = std::max(1e-5 * glm::length(high - low), 1e-30);
+    std::map<std::array<std::int64_t, 3>, std::uint32_t> cells;
+    for (const Edge& e : open) {
+        next[hole_of(e.from)] = hole_of(e.to);
+        const glm::dvec3 p = (glm::dvec3(mesh.positions[e.from]) - low) / apart;
+        const std::array<std::int64_t, 3> cell = {static_cast<std::int64_t>(p.x), static_cast<std::int64_t>(p.y), static_cast<std::int64_t>(p.z)};
+        for (int n = 0; n < 27; ++n)
+            if (const auto beside = cells.find({cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1}); beside != cells.end()) next[hole_of(e.from)] = hole_of(beside->second);
+        cells.emplace(cell, e.from);
     }
-    constexpr double few = 0.1;
-    return static_cast<double>(open) <= few * static_cast<double>(all);
+    std::map<std::uint32_t, glm::dvec3> holes;
+    for (const Edge& e : open) {
+        const std::uint32_t h = hole_of(e.from);
+        const glm::dvec3 corner(mesh.positions[h]);
+        holes.try_emplace(h, 0.0).first->second += 0.5 * glm::cross(glm::dvec3(mesh.positions[e.from]) - corner, glm::dvec3(mesh.positions[e.to]) - corner);
+    }
+    double missing = 0, area = 0;
+    for (const auto& [h, vector] : holes) missing += glm::length(vector);
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const glm::dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]), c(mesh.positions[mesh.indices[t + 2]]);
+        area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    constexpr double hardly_anything = 0.05;
+    return missing <= hardly_anything * (area + missing);
 }
 
 stages::Mesh build_mesh(const scenes::Mesh& m, const scenes::Scene& scene, const glm::vec3& origin) {
     stages::Mesh r;
     r.name = m.name;
     r.material = m.material;
-    r.closed = is_closed(m, true) || is_closed(m, false);
+    r.closed = is_closed(m);
     r.low = glm::vec3(std::numeric_limits<float>::infinity());
     r.high = -r.low;
     std::vector<stages::WorldVertex<float>> vertices;

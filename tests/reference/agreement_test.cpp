@@ -48,18 +48,18 @@ scenes::Scene ball_in_haze() {
     return scene;
 }
 
-constexpr int passes = 96;
+constexpr int few_passes = 96;
 
-reference::Tracer traced(const scenes::Scene& scene, int width, int height, std::uint64_t photons) {
+reference::Tracer traced(const scenes::Scene& scene, int width, int height, std::uint64_t photons, int passes = few_passes) {
     reference::Options options;
     options.width = width, options.height = height;
-    options.photons_per_pass = static_cast<std::uint32_t>(photons / passes);
+    options.photons_per_pass = static_cast<std::uint32_t>(photons / static_cast<std::uint64_t>(passes));
     reference::Tracer tracer(scene, options);
-    tracer.run({.photons = static_cast<std::uint64_t>(options.photons_per_pass) * passes});
+    tracer.run({.photons = static_cast<std::uint64_t>(options.photons_per_pass) * static_cast<std::uint64_t>(passes)});
     return tracer;
 }
 
-oracle::Options judging(int width, int height, std::uint64_t photons) {
+oracle::Options judging(int width, int height, std::uint64_t photons, int passes = few_passes) {
     oracle::Options judge;
     judge.photons = photons, judge.batches = passes, judge.width = width, judge.height = height, judge.seed = 7;
     return judge;
@@ -139,8 +139,11 @@ TEST_CASE("light that a medium scatters once is the oracle's, in haze and in a c
     for (const bool cloud : {false, true}) {
         CAPTURE(cloud);
         const scenes::Scene scene = room(cloud);
-        const reference::Tracer tracer = traced(scene, 44, 33, is_patient() ? 10'000'000 : 1'000'000);
-        oracle::Options judge = judging(44, 33, is_patient() ? 30'000'000 : 3'000'000);
+        // What is sampled from the eye is sampled once a pass.
+        const int more = is_patient() ? 10 : 1, passes = more * few_passes;
+        const auto photons = static_cast<std::uint64_t>(more) * 1'000'000;
+        const reference::Tracer tracer = traced(scene, 44, 33, photons, passes);
+        oracle::Options judge = judging(44, 33, 3 * photons, passes);
         judge.scattering = judge.direct = true;
         judge.near_eye = 2.5;  // few photons, each with a great weight, are what errors are underestimated of
         const oracle::Result truth = oracle::trace(scene, judge);

@@ -81,6 +81,19 @@ TEST_CASE("a thin-walled plate does the same without a slab") {
     CHECK(t.mean("caustic.G") == doctest::Approx(0.5 / pi * 2 * (1 - r) / (1 + r)).epsilon(2e-3));
 }
 
+TEST_CASE("a lamp in the plane of a ceiling shines as it does without the ceiling") {
+    const auto caustic = [](bool ceiling) {
+        scenes::Scene scene = floor_seen_from({0.2, 1.2, 2.5}, 0.2);
+        oracle::add_sheet(scene, "plate", oracle::add_thin_glass(scene, 1.6), {-4, 1.5, -4}, {0, 0, 8}, {8, 0, 0});
+        if (ceiling) oracle::add_sheet(scene, "ceiling", oracle::add_lambert(scene, 0.5), {-3, 2.3, -2}, {0, 0, 6}, {6, 0, 0});
+        oracle::add_point(scene, {0.3, 2.3, 0.2}, 5);
+        return traced(scene, 16, 16, 1 << 14, 32).mean("caustic.G");
+    };
+    const double without = caustic(false);
+    CHECK(without > 0.01);
+    CHECK(caustic(true) == doctest::Approx(without).epsilon(5e-3));
+}
+
 TEST_CASE("near its axis a ball lens has its focus at n R / (2 (n - 1)) from its middle") {
     // A narrow beam: where it lands is smallest at the focus, and there far smaller than the beam.
     const double radius = 0.5, n = 1.5, focus = n * radius / (2 * (n - 1)), beam = 0.02;

@@ -137,6 +137,20 @@ TEST_CASE("in a browser without a network every point is reached, and shows its 
     }
 }
 
+TEST_CASE("a truth that is kept is taken again, and for no other scene") {
+    const Truths t;
+    std::filesystem::remove(t.folder / "truths/glass-sphere.exr");
+    REQUIRE(t.chart({"glass-sphere", "--settings", "few.txt", "-o", "c.csv", "--reference-noise", "1"}).code == 0);
+    const std::string made = content_of(t.folder / "truths/glass-sphere.exr");
+    REQUIRE(t.chart({"glass-sphere", "--settings", "few.txt", "-o", "c.csv"}).code == 0);
+    CHECK(content_of(t.folder / "truths/glass-sphere.exr") == made);
+    std::filesystem::copy_file(t.folder / "truths/glass-sphere.exr", t.folder / "truths/mirror-ring.exr");
+    const Outcome other = t.chart({"mirror-ring", "--settings", "few.txt", "-o", "d.csv"});
+    CHECK(other.code == 2);
+    CHECK(other.err == "nephroid: truths/mirror-ring.exr: is the truth of another scene, or of this one before it changed; remove it to have it made again\n");
+    CHECK_FALSE(std::filesystem::exists(t.folder / "d.csv"));
+}
+
 TEST_CASE("bad requests: exit code 2, one line, nothing left behind") {
     const Truths t;
     std::ofstream(t.folder / "bad.txt") << "--photons 32^2\n--photons 8^2\n";

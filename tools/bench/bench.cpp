@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace nephroid::bench {
@@ -27,6 +28,21 @@ double median(std::vector<double> v) {
 }
 double least(const std::vector<double>& v) { return *std::min_element(v.begin(), v.end()); }
 
+// Of this process, as the system counts it: now, and at most since the last `forget_peak`.
+struct Resident {
+    double now_mib = 0, peak_mib = 0;
+};
+Resident resident() {
+    Resident r;
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmRSS:")) r.now_mib = std::strtod(line.c_str() + 6, nullptr) / 1024;
+        if (line.starts_with("VmHWM:")) r.peak_mib = std::strtod(line.c_str() + 6, nullptr) / 1024;
+    }
+    return r;
+}
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
 }  // namespace
 
 std::vector<int> Bench::numbers(const std::string& key, std::vector<int> standard) const {
@@ -43,6 +59,7 @@ bool Bench::wants(const std::string& workload, const std::string& variant, const
 
 void Bench::measure(const std::string& workload, const std::string& variant, const std::string& parameters, const std::vector<Stage>& stages,
                     const std::vector<std::pair<std::string, double>>& counters) const {
+    forget_peak();
     std::vector<PipelineStatistics> statistics;
     for (const Stage& stage : stages) statistics.push_back(stage.run());
 
@@ -76,6 +93,9 @@ void Bench::measure(const std::string& workload, const std::string& variant, con
         std::printf("}");
     }
     std::printf("}");
+    constexpr double mib = 1 << 20;
+    const double resources = static_cast<double>(host_memory_held() - device_.arena_bytes()) / mib;
+    std::printf(",\"resources_mib\":%.2f,\"peak_mib\":%.2f", resources, resident().peak_mib - resident_before_);
     for (const auto& [name, value] : counters) std::printf(",\"%s\":%.0f", name.c_str(), value);
     std::printf("}\n");
     std::fflush(stdout);
@@ -138,7 +158,7 @@ glm::mat4 gl_matrix(const std::array<float, 16>& m) {
 void run(const Options& options) {
     Device device({.threads = options.threads, .lanes = options.lanes});
     throw_faults(device.faults());
-    const Bench bench(options, device);
+    const Bench bench(options, device, resident().now_mib);
     std::printf("{\"env\":{\"renderer\":\"nephroid\",\"isa\":\"%s\",\"lanes\":%d,\"threads\":%d}}\n", name_of(device.isa()), lane_count(device.isa()), device.threads());
     run_gbuffer(bench);
     run_photon_splat(bench);

@@ -35,7 +35,8 @@ struct Stage {
 
 class Bench {
 public:
-    Bench(const Options& options, Device& device) : options_(options), device_(device) {}
+    // `resident_before`: MiB that the process took when it had no workload's inputs.
+    Bench(const Options& options, Device& device, double resident_before) : options_(options), device_(device), resident_before_(resident_before) {}
 
     Device& device() const { return device_; }
     std::vector<int> numbers(const std::string& key, std::vector<int> standard) const;
@@ -44,7 +45,9 @@ public:
     bool dumping() const { return !options_.dump_folder.empty(); }
     bool dumping_inputs() const { return dumping() && options_.dump_inputs; }
 
-    // Runs the stages once to warm up, then as often as asked for, and prints one JSON line.
+    // Runs the stages once to warm up, then as often as asked for, and prints one JSON line. resources_mib in it are inputs,
+    // targets and streams, as they were asked for; peak_mib what the process took at most meanwhile beyond what it takes
+    // without a workload, of the first workload in a process: the heap keeps what later ones leave.
     void measure(const std::string& workload, const std::string& variant, const std::string& parameters, const std::vector<Stage>& stages,
                  const std::vector<std::pair<std::string, double>>& counters = {}) const;
 
@@ -55,6 +58,7 @@ public:
 private:
     Options options_;
     Device& device_;
+    double resident_before_;
     mutable bool any_wanted_ = false;
 };
 

@@ -46,6 +46,7 @@ std::string quoted(const std::string& text) {
 
 constexpr double panel_width = 392, panel_height = 300, left = 62, right = 14, top = 26, bottom = 46;
 constexpr double title_height = 30, legend_line = 20, block_gap = 8;
+constexpr double most_shown = 10;  // a black picture's relMSE is at most 1
 constexpr double letter = 6.4, small_letter = 5.6;  // the mean width of a letter, of the sizes that are used
 
 // ---- axes
@@ -144,14 +145,15 @@ public:
         for (const Measurement& m : all_) {
             if (has_place(m)) add_name(scenes_, m.scene);
             add_name(series_, m.series);
-            errors_.add(m.relmse);
-            errors_.add(m.caustic_relmse);
+            errors_.add(std::min(m.relmse, most_shown));
+            errors_.add(std::min(m.caustic_relmse, most_shown));
         }
         // A truth's noise is shown where it is near what is measured.
         Range floors;
         for (const Measurement& m : all_) floors.add(m.reference_noise);
         if (!floors.empty() && !errors_.empty()) errors_.add(std::max(floors.low * 0.7, errors_.low * 0.2));
         errors_ = errors_.rounded();
+        beyond_ = std::any_of(all_.begin(), all_.end(), [&](const Measurement& m) { return m.relmse > errors_.high; });
         for (const Measurement& m : all_)
             if (std::find(scenes_.begin(), scenes_.end(), m.scene) == scenes_.end()) add_name(not_shown_, m.scene + printf_text(" (%g)", m.relmse));
         if (scenes_.empty()) scenes_.push_back("");
@@ -210,11 +212,18 @@ private:
         };
         for (const std::string& name : series_) add(name);
         for (const char* name : front_names) add(name);
-        header_ = y + legend_line * (not_shown_.empty() ? 1 : 2);
+        header_ = y + legend_line * (remark().empty() ? 1 : 2);
+    }
+
+    std::string remark() const {
+        std::string what;
+        if (beyond_) what = "errors beyond the upper edge lie on it";
+        if (!not_shown_.empty()) what += (what.empty() ? "" : "; ") + ("not shown, since logarithms do not have their errors: " + joined(not_shown_));
+        return what;
     }
 
     void header() {
-        if (!not_shown_.empty()) text("not shown, since logarithms do not have their errors: " + joined(not_shown_), 12, header_ - legend_line, "left font ',11' front");
+        if (!remark().empty()) text(remark(), 12, header_ - legend_line, "left font ',11' front");
         const Measurement& m = all_.front();
         std::string runs = m.runs > 1 ? printf_text(", median of %d runs with their spread", m.runs) : "";
         text(printf_text("Error against time and cost: relMSE of %d x %d pixels, %d thread%s, %d lanes", m.width, m.height, m.threads, m.threads == 1 ? "" : "s", m.lanes) + runs, 12, 16, "left font ',14' front");
@@ -235,7 +244,7 @@ private:
     void front_steps(const std::vector<Tradeoff>& points, const Range& range, const std::string& how) {
         std::string data;
         double last = 0;
-        for (const std::size_t k : pareto_front(points)) data += printf_text("%.9g %.9g\n", points[k].price, last = points[k].error);
+        for (const std::size_t k : pareto_front(points)) data += printf_text("%.9g %.9g\n", points[k].price, last = shown(points[k].error));
         if (data.empty()) return;
         data += printf_text("%.9g %.9g\n", range.high, last);
         add_plot("using 1:2 with steps " + how, data);
@@ -286,18 +295,18 @@ private:
                 const Look look = look_of(series_of(m));
                 const std::string color = color_text(front ? look.color : pale(look.color));
                 if (price == Price::Time && m.slowest_ms > m.fastest_ms)
-                    add_plot("using 1:2:3:4 with xerrorbars pt 0 lw 0.9 lc rgb '" + color + "'", printf_text("%.9g %.9g %.9g %.9g\n", m.render_ms, m.relmse, m.fastest_ms, m.slowest_ms));
-                add_plot(printf_text("using 1:2 with points pt %d ps %.2f lc rgb '%s'", look.shape, front ? 0.75 : 0.6, color.c_str()), printf_text("%.9g %.9g\n", price_of(m, price), m.relmse));
-                drawing_.marks.push_back({placed[k], price, x_of(price_of(m, price)), y_of(m.relmse), front});
+                    add_plot("using 1:2:3:4 with xerrorbars pt 0 lw 0.9 lc rgb '" + color + "'", printf_text("%.9g %.9g %.9g %.9g\n", m.render_ms, shown(m.relmse), m.fastest_ms, m.slowest_ms));
+                add_plot(printf_text("using 1:2 with points pt %d ps %.2f lc rgb '%s'", look.shape, front ? 0.75 : 0.6, color.c_str()), printf_text("%.9g %.9g\n", price_of(m, price), shown(m.relmse)));
+                drawing_.marks.push_back({placed[k], price, x_of(price_of(m, price)), y_of(shown(m.relmse)), front});
             }
         }
         Labels labels({x0, y0, x1, y1});
-        for (const std::size_t k : placed) labels.keep_clear(x_of(price_of(all_[k], price)), y_of(all_[k].relmse));
+        for (const std::size_t k : placed) labels.keep_clear(x_of(price_of(all_[k], price)), y_of(shown(all_[k].relmse)));
         for (std::size_t k = 0; k < placed.size(); ++k) {
             const Measurement& m = all_[placed[k]];
             const std::string label = label_of(m.options);
             double x = 0, y = 0;
-            if (on_front[k] && !label.empty() && labels.place(label, x_of(points[k].price), y_of(points[k].error), x, y)) text(label, x, y, "center font ',9' textcolor rgb '#202020' front");
+            if (on_front[k] && !label.empty() && labels.place(label, x_of(points[k].price), y_of(shown(points[k].error)), x, y)) text(label, x, y, "center font ',9' textcolor rgb '#202020' front");
         }
         script_ += printf_text("set lmargin at screen %.6f\nset rmargin at screen %.6f\n", x0 / drawing_.width, x1 / drawing_.width);
         script_ += printf_text("set tmargin at screen %.6f\nset bmargin at screen %.6f\n", 1 - y0 / drawing_.height, 1 - y1 / drawing_.height);
@@ -310,7 +319,10 @@ private:
     const std::vector<Price>& prices_;
     std::vector<std::string> scenes_, series_, not_shown_;
     std::vector<Item> legend_;
+    double shown(double error) const { return std::min(error, errors_.high); }
+
     Range errors_;
+    bool beyond_ = false;  // there are errors above the upper edge
     int columns_ = 1, rows_ = 1, blocks_ = 0;
     double header_ = 0;
     std::string script_, plots_;

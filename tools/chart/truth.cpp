@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tools/comparison.hpp"
-#include "tools/printf_text.hpp"
+#include "tools/reference/digest.hpp"
 #include "tools/reference/reference.hpp"
 
 namespace nephroid::chart {
@@ -17,15 +17,17 @@ namespace {
 
 const std::vector<std::string> rgb{"R", "G", "B"}, caustic_layer{"caustic.R", "caustic.G", "caustic.B"};
 
-// What a file's header says of its noise, as `nephroid reference` writes it.
-constexpr const char *noise_name = "nephroid:noise", *caustic_noise_name = "nephroid:caustic-noise";
+std::string text_in_header(const PictureData& file, const std::string& name) {
+    for (const auto& [key, text] : file.metadata)
+        if (key == name) return text;
+    return "";
+}
+// Of its noise.
 double number_in_header(const PictureData& file, const std::string& name) {
-    for (const auto& [key, text] : file.metadata) {
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        if (key == name && !text.empty() && *end == 0 && value >= 0) return value;
-    }
-    return unknown;
+    const std::string text = text_in_header(file, name);
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return !text.empty() && *end == 0 && value >= 0 ? value : unknown;
 }
 
 Truth truth_from(const PictureData& file, const std::string& path) {
@@ -43,8 +45,8 @@ Truth truth_from(const PictureData& file, const std::string& path) {
         truth.not_caustic = not_caustic(truth.picture, caustic, truth.mask);
         truth.has_caustic = counts(truth.not_caustic);
     }
-    truth.noise = number_in_header(file, noise_name);
-    truth.caustic_noise = number_in_header(file, caustic_noise_name);
+    truth.noise = number_in_header(file, reference::noise_name);
+    truth.caustic_noise = number_in_header(file, reference::caustic_noise_name);
     return truth;
 }
 
@@ -56,13 +58,15 @@ Truth truth_of(const std::string& name, const scenes::Scene& scene, int width, i
         const PictureData file = read_picture(stem + ".exr");
         if (file.width != width || file.height != height)
             throw std::runtime_error(stem + ".exr: has " + std::to_string(file.width) + " x " + std::to_string(file.height) + " pixels instead of " + std::to_string(width) + " x " + std::to_string(height));
+        const std::string traced = text_in_header(file, reference::scene_name);
+        if (!traced.empty() && traced != reference::text_of_digest(reference::digest_of(scene))) throw std::runtime_error(stem + ".exr: is the truth of another scene, or of this one before it changed; remove it to have it made again");
         return truth_from(file, stem + ".exr");
     }
     const auto start = std::chrono::steady_clock::now();
     reference::Tracer tracer(scene, {.width = width, .height = height, .threads = options.threads});
     tracer.run({.seconds = options.seconds, .noise = options.noise}, progress);
     PictureData picture = tracer.picture();
-    picture.metadata = {{noise_name, printf_text("%.4g", tracer.noise())}, {caustic_noise_name, printf_text("%.4g", tracer.caustic_noise())}};
+    picture.metadata = tracer.metadata();
     if (!stem.empty()) write_picture(stem + ".exr", picture);
     Truth truth = truth_from(picture, name);
     truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,6 +3,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "tools/printf_text.hpp"
+
 namespace nephroid::reference {
 
 namespace {
@@ -44,5 +46,7 @@ std::uint64_t digest_of(const scenes::Scene& s) {
     d.all(s.environment.width, s.environment.height, s.environment.linear);
     return d.value();
 }
+
+std::string text_of_digest(std::uint64_t digest) { return printf_text("%016llx", static_cast<unsigned long long>(digest)); }
 
 }  // namespace nephroid::reference

@@ -104,6 +104,8 @@ bool Geometry::intersect(FloatRay& r, const Vec& direction, Hit& hit) const {
 
 bool Geometry::closest(const Origin& from, const Vec& direction, Hit& hit) const {
     FloatRay r = start(from, direction);
+    // A lamp or an eye that lies in a surface shines and looks away from it, as it is seen from elsewhere.
+    if (from.normal == Vec(0.0)) r.embree.ray.tnear = static_cast<float>(clearance_);
     return intersect(r, direction, hit);
 }
 

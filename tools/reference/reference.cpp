@@ -1,24 +1,22 @@
 #include "tools/reference/reference.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <cstring>
-#include <exception>
-#include <mutex>
 #include <stdexcept>
 #include <thread>
 
 #include "tools/picture_difference.hpp"
+#include "tools/printf_text.hpp"
 #include "tools/reference/camera.hpp"
 #include "tools/reference/digest.hpp"
 #include "tools/reference/emission.hpp"
 #include "tools/reference/eye_tracer.hpp"
 #include "tools/reference/film.hpp"
+#include "tools/reference/ordered_passes.hpp"
 #include "tools/reference/photon_tracer.hpp"
+#include "tools/reference/state_bytes.hpp"
 
 namespace nephroid::reference {
 
@@ -147,48 +145,6 @@ void Tracer::Impl::fold(const Desk& desk) {
     account += desk.account;
     ++passes;
 }
-
-namespace {
-
-// Traces passes [first, last), each by one thread, and folds them in their order until `fold` says that it is over.
-void run_passes(std::uint64_t first, std::uint64_t last, std::vector<Desk>& desks, const std::function<void(std::uint64_t, Desk&)>& trace, const std::function<bool(Desk&)>& fold) {
-    std::atomic<std::uint64_t> next = first;
-    std::uint64_t folded = first;
-    bool over = false;
-    std::mutex mutex;
-    std::condition_variable turn;
-    std::exception_ptr error;
-    const auto work = [&](Desk& desk) {
-        for (std::uint64_t pass = next++; pass < last; pass = next++) {
-            std::exception_ptr mine;
-            try {
-                trace(pass, desk);
-            } catch (...) {
-                mine = std::current_exception();
-            }
-            std::unique_lock lock(mutex);
-            turn.wait(lock, [&] { return folded == pass || over; });
-            if (over) return;
-            try {
-                if (mine) std::rethrow_exception(mine);
-                over = fold(desk);
-            } catch (...) {
-                error = std::current_exception();
-                over = true;
-            }
-            ++folded;
-            turn.notify_all();
-            if (over) return;
-        }
-    };
-    std::vector<std::thread> others;
-    for (std::size_t k = 1; k < desks.size(); ++k) others.emplace_back(work, std::ref(desks[k]));
-    work(desks[0]);
-    for (std::thread& t : others) t.join();
-    if (error) std::rethrow_exception(error);
-}
-
-}  // namespace
 
 void Tracer::Impl::pilot(std::vector<Desk>& desks) {
     if (is_piloted) return;
@@ -354,30 +310,15 @@ double Tracer::caustic_noise() const { return impl_->noise_of(true); }
 std::uint64_t Tracer::photons() const { return impl_->passes * impl_->options.photons_per_pass; }
 int Tracer::passes() const { return static_cast<int>(impl_->passes); }
 
+std::vector<std::pair<std::string, std::string>> Tracer::metadata() const {
+    return {{scene_name, text_of_digest(impl_->digest)}, {photons_name, std::to_string(photons())}, {noise_name, printf_text("%.4g", noise())}, {caustic_noise_name, printf_text("%.4g", caustic_noise())}};
+}
+
 const std::vector<std::string>& Tracer::notes() const { return impl_->notes; }
 
 namespace {
 
 constexpr char state_begins[] = "nephroid reference 1\n";
-
-void put(std::string& bytes, const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
-template <class T> void put(std::string& bytes, const std::vector<T>& v) { put(bytes, v.data(), v.size() * sizeof(T)); }
-
-class Reader {
-public:
-    explicit Reader(const std::string& bytes) : bytes_(bytes) {}
-    void get(void* data, std::size_t size) {
-        if (size > bytes_.size() - at_) throw std::runtime_error("ends too soon to be a picture to go on with");
-        std::memcpy(data, bytes_.data() + at_, size);
-        at_ += size;
-    }
-    template <class T> void get(std::vector<T>& v) { get(v.data(), v.size() * sizeof(T)); }
-    bool at_end() const { return at_ == bytes_.size(); }
-
-private:
-    const std::string& bytes_;
-    std::size_t at_ = 0;
-};
 
 }  // namespace
 
@@ -400,7 +341,7 @@ void Tracer::resume(const State& state) {
     Impl& m = *impl_;
     if (!state.starts_with(state_begins)) throw std::runtime_error("is not a picture to go on with");
     const std::string bytes = state.substr(sizeof state_begins - 1);
-    Reader r(bytes);
+    StateReader r(bytes);
     std::uint64_t header[7];
     r.get(header, sizeof header);
     if (header[0] != m.digest || header[1] != m.options.seed || header[2] != m.options.photons_per_pass ||

@@ -18,6 +18,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/scene.hpp"
@@ -25,6 +26,8 @@
 #include "tools/reference/account.hpp"
 
 namespace nephroid::reference {
+
+inline constexpr const char *scene_name = "nephroid:scene", *photons_name = "nephroid:photons", *noise_name = "nephroid:noise", *caustic_noise_name = "nephroid:caustic-noise";
 
 struct Options {
     int width = 512, height = 384;
@@ -73,6 +76,8 @@ public:
     double caustic_noise() const;
     std::uint64_t photons() const;
     int passes() const;
+    // What stands in a picture's file beside its pixels: scene_name, photons_name, noise_name, caustic_noise_name.
+    std::vector<std::pair<std::string, std::string>> metadata() const;
 
     State state() const;
     // Goes on where `state` ended. Throws std::runtime_error if that was of another scene or other options.

@@ -1,5 +1,5 @@
-// Light followed through any chain of specular surfaces, of any objects, to the receiver that it lands on, by exact
-// intersection with the world's triangles.
+// Light, or a look, followed through any chain of specular surfaces, of any objects, to the receiver that it lands on, by
+// exact intersection with the world's triangles.
 //
 // What is done at a surface is what image_space_tracer.hpp does, and the branches and accounts are the same. Where an
 // interpolated normal would send light to the wrong side of its triangle, the triangle's own counts; the adjoint correction
@@ -18,6 +18,7 @@ struct ExactTracer {
     Partial partial = Partial::NotFollowed;
     bool chance_from_start = false;  // what surfaces after the first do in part is left to chance from the second on
     std::uint64_t seed = 0;
+    bool light = true;  // else a look: nothing is corrected for, radiance is scaled, and sides of receivers that nobody sees are not there
 
     template <class F>
     struct Ray {
@@ -27,6 +28,9 @@ struct ExactTracer {
         vec3<F> attenuation{F(0.0f)};  // of what the ray is in
         LaneMask<F> active;
         LaneMask<F> landed{false};
+        TriangleHierarchyView::Hit<F> landing{F(0.0f), F(0.0f), F(0.0f), LaneInt<F>(-1)};
+        LaneMask<F> escaped{false};  // a look that met nothing
+        vec3<F> escaping{F(0.0f)};   // what was carried then
         F length{0.0f};           // of the path so far
         LaneUint<F> index;        // of its random numbers
         LaneMask<F> by_chance;    // behind the surface at which light is handed on

@@ -9,6 +9,7 @@
 #include "stages/caustic_map/irradiance.hpp"
 #include "stages/caustic_view.hpp"
 #include "stages/exact_tracing/exact_photons.hpp"
+#include "stages/exact_tracing/exact_view.hpp"
 #include "stages/hierarchical_caustic_maps/photon_gather.hpp"
 #include "stages/hierarchical_caustic_maps/resolve_levels.hpp"
 #include "stages/mapping/splat_pass.hpp"
@@ -125,6 +126,7 @@ struct Renderer::Impl : PassDraws {
 
     // ---- drawing
 
+    bool exact() const { return settings.tracing == Tracing::Exact; }
     bool specular(int mesh) const { return world.material_of(world.meshes[mesh]).kind != SurfaceKind::Lambert; }
     Texture2DView<Format::RGBA8Srgb> texture_of(const Material& m) const {
         return m.texture >= 0 ? Texture2DView<Format::RGBA8Srgb>(world.textures[m.texture]) : Texture2DView<Format::RGBA8Srgb>();
@@ -203,6 +205,8 @@ struct Renderer::Impl : PassDraws {
     void hide_behind();
     void impostor(const Pass& pass);
     void trace_seen(const Pass& pass);
+    void trace_seen_exactly(const Pass& pass);
+    void store_seen(const Pass& pass, const auto& shader);
     void emission_pass();
     void direct_light(const Pass& pass);
     void caustic_light(const Pass& pass);
@@ -236,9 +240,13 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         small_caustic = target(Format::RGBA32F, settings.width, settings.height, "caustic");
         small_emission = target(Format::RGBA32F, settings.width, settings.height, "emission");
     }
-    shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
-    shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
-    if (any_specular) {
+    if (exact()) {
+        faults.add(traced.build(device.executor(), world));
+    } else {
+        shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
+        shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
+    }
+    if (any_specular && !exact()) {
         seen_layers = LayerPictures(width, height, settings.solid_layers);
         impostor_depth = layered(Format::D32F, settings.impostor_size, 6, "impostor depth");
         impostor_normals = layered(Format::RGBA32F, settings.impostor_size, 6, "impostor normals");
@@ -246,9 +254,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     }
     if (!plan.maps.empty()) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
-        if (settings.tracing == Tracing::Exact) {
-            faults.add(traced.build(device.executor(), world));
-        } else {
+        if (!exact()) {
             receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
             receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
             caster_layers = LayerPictures(n, n, settings.solid_layers);
@@ -474,7 +480,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<Ta
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
     const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
-    if (settings.tracing == Tracing::Exact) trace_photons_exactly(pass, targets);
+    if (exact()) trace_photons_exactly(pass, targets);
     else trace_photons(pass, targets);
     if (!settings.audit) return;
     Executor& executor = device.executor();
@@ -619,10 +625,29 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
     trace.impostor_albedo = impostor_albedo;
     trace.surroundings.picture = world.environment;
     trace.way = pass.branch == Branch::Reflected ? Way::Reflect : Way::Refract;
+    store_seen(pass, trace);
+}
+
+void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
+    TraceSeenExactly trace;
+    trace.tracer.world = traced.view();
+    trace.tracer.bounces = settings.bounces;
+    trace.tracer.branch = pass.branch;
+    trace.tracer.light = false;
+    trace.eye = eye();
+    trace.width = width, trace.height = height;
+    trace.first = points[first].positions;
+    trace.eye_depth = eye_depth;
+    trace.surroundings.picture = world.environment;
+    trace.pixel_measure = 4.0f * trace.eye.half.x * trace.eye.half.y / (static_cast<float>(width) * static_cast<float>(height));
+    store_seen(pass, trace);
+}
+
+void Renderer::Impl::store_seen(const Pass& pass, const auto& shader) {
     const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : refracted];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
-    draw(Program{CoverScreen{}, trace}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
+    draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
 }
 
 void Renderer::Impl::emission_pass() {
@@ -635,6 +660,12 @@ void Renderer::Impl::emission_pass() {
 
 void Renderer::Impl::direct_light(const Pass& pass) {
     const Light& light = world.lights[pass.light];
+    if (exact()) {
+        const View view = light.kind == LightKind::Directional ? parallel_view(light) : View();
+        for (const PointPictures& p : points)
+            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced.view().hierarchy}, {direct.mip()}, blend_additive);
+        return;
+    }
     ShadowMap shadows;
     shadows.cube = !has_shadow_view(light);
     if (shadows.cube) shadows.faces = cube_views(light.position);
@@ -694,7 +725,7 @@ void Renderer::Impl::run(const Pass& pass) {
         case PassKind::HideBehind: return hide_behind();
         case PassKind::SeenLayers: return draw_layers(eye(), pass.mesh, seen_layers);
         case PassKind::Impostor: return impostor(pass);
-        case PassKind::TraceSeen: return trace_seen(pass);
+        case PassKind::TraceSeen: return exact() ? trace_seen_exactly(pass) : trace_seen(pass);
         case PassKind::Surroundings: return draw_screen("surroundings", ShadeSurroundings{eye(), eye_depth, {world.environment}, 1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height)}, {emission.mip()}, blend_additive);
         case PassKind::Emission: return emission_pass();
         case PassKind::DirectLight: return direct_light(pass);

@@ -11,7 +11,7 @@ namespace nephroid {
 namespace {
 
 constexpr const char* size_names =
-    "w1.nu w1.nv w1.R w2.N w2.R w3.N w3.R w4.N w4.R w5.G w5.W w5.H w6.S w6.grid w6.iters w7.W w8.W w8.H w8.D w8.steps";
+    "w1.nu w1.nv w1.R w2.N w2.R w3.N w3.R w4.N w4.R w5.G w5.W w5.H w6.S w6.grid w6.iters w7.W w8.W w8.H w8.D w8.steps w9.N w9.levels";
 
 bool is_size_name(const std::string& name) {
     std::stringstream names(size_names);

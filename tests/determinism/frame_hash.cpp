@@ -96,6 +96,15 @@ int hash_all(const Options& o) {
         print(name, test::hash_of_scene(device, scene, around));
         ++count;
     }
+    // SCENE/VARIANT: of hierarchical caustic maps, the default for every scene, the others for a lamp and for the sun.
+    for (const auto& [variant_name, variant] : nephroid::stages::hierarchical::named_variants) {
+        for (const std::string_view scene : nephroid::scenes::bundled_scene_names()) {
+            const std::string name = std::string(scene) + "/" + variant_name;
+            if (!wanted(o, name) || (variant != nephroid::stages::hierarchical::Variant::Varying && scene != "glass-sphere" && scene != "pool")) continue;
+            print(name, test::hash_of_scene(device, scene, variant, around));
+            ++count;
+        }
+    }
     for (int kind = 0; kind < test::heavy_kinds; ++kind) {
         std::string name = "draw:" + test::heavy_name(kind);
         for (char& c : name) c = c == ' ' ? '-' : c;

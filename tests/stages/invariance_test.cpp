@@ -87,29 +87,33 @@ TEST_CASE("far from the origin the picture stays") {
 }
 
 TEST_CASE("the picture does not depend on threads, lanes, observers or what was drawn before") {
-    const scenes::Scene scene = scenes::bundled_scene("glass-sphere");
-    const stages::Settings settings = small(64, 48, 128, 128);
-    Device reference_device({.threads = 1, .lanes = 1});
-    const Rendered reference = render(reference_device, scene, settings);
-    for (const int lanes : {1, 4, 8, 16}) {
-        Isa isa;
-        if (!isa_with_lanes(lanes, isa)) continue;
-        for (const int threads : {1, 2, 3}) {
-            CAPTURE(lanes);
-            CAPTURE(threads);
-            Device device({.threads = threads, .lanes = lanes});
-            const Rendered r = render(device, scene, settings);
-            CHECK(r.direct == reference.direct);
-            CHECK(r.caustic == reference.caustic);
-            CHECK(r.emission == reference.emission);
+    for (const auto& [name, tracing] : {std::pair{"glass-sphere", stages::Tracing::ImageSpace}, {"glass-sphere", stages::Tracing::Exact}, {"sphere-above-water", stages::Tracing::Exact}}) {
+        CAPTURE(name);
+        const scenes::Scene scene = scenes::bundled_scene(name);
+        stages::Settings settings = small(64, 48, 128, 128);
+        settings.tracing = tracing;
+        Device reference_device({.threads = 1, .lanes = 1});
+        const Rendered reference = render(reference_device, scene, settings);
+        for (const int lanes : {1, 4, 8, 16}) {
+            Isa isa;
+            if (!isa_with_lanes(lanes, isa)) continue;
+            for (const int threads : {1, 2, 3}) {
+                CAPTURE(lanes);
+                CAPTURE(threads);
+                Device device({.threads = threads, .lanes = lanes});
+                const Rendered r = render(device, scene, settings);
+                CHECK(r.direct == reference.direct);
+                CHECK(r.caustic == reference.caustic);
+                CHECK(r.emission == reference.emission);
+            }
         }
+        Device device;
+        Rendered again = render(device, scene, settings);
+        for (int i = 0; i < 2; ++i) REQUIRE(again.renderer->render().empty());
+        std::vector<float> caustic(again.caustic.size());
+        again.renderer->picture().caustic->download(caustic.data());
+        CHECK(caustic == reference.caustic);
     }
-    Device device;
-    Rendered again = render(device, scene, settings);
-    for (int i = 0; i < 2; ++i) REQUIRE(again.renderer->render().empty());
-    std::vector<float> caustic(again.caustic.size());
-    again.renderer->picture().caustic->download(caustic.data());
-    CHECK(caustic == reference.caustic);
 }
 
 TEST_CASE("variants agree on how much light there is") {

@@ -168,6 +168,7 @@ void run(const Options& options) {
     run_refine(bench);
     run_final_shade(bench);
     run_volume_march(bench);
+    run_trace(bench);
     if (!bench.any_wanted()) throw std::runtime_error("bench: no workload, variant or size has '" + options.only.front() + "' in its name");
 }
 

@@ -79,5 +79,6 @@ void run_beams(const Bench& bench);
 void run_refine(const Bench& bench);
 void run_final_shade(const Bench& bench);
 void run_volume_march(const Bench& bench);
+void run_trace(const Bench& bench);
 
 }  // namespace nephroid::bench

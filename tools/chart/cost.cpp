@@ -28,7 +28,9 @@ Work work_of(stages::PassKind kind) {
     switch (kind) {
         case Photons:
         case FitCausticView: return Work::Photons;
-        case SplatPhotons: return Work::Splats;
+        case SplatPhotons:
+        case TraversePhotons: return Work::Splats;
+        case ValidityPyramid:
         case ResolveCaustic: return Work::MapTexels;
         case TraceSeen: return Work::SeenThrough;
         case Surroundings:
@@ -64,6 +66,8 @@ double texels_of(const RenderedPass& pass, const stages::Settings& s) {
         case CausticReceivers:
         case SplatPhotons:
         case ResolveCaustic: return squared(s.map_size);
+        case ValidityPyramid: return squared(s.photons) / 3;  // of 1/4, 1/16 ... of the photons
+        case TraversePhotons: return 0;
         case SurfacePoints:
         case HideBehind:
         case SeenLayers:

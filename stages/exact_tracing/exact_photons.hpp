@@ -1,0 +1,73 @@
+// Photons of a caustic map, traced exactly: as mapping/photon_pass.hpp, every pixel of the light's view of an object is one,
+// but nothing is drawn beforehand. The ray through a pixel's middle belongs to the object if that is what it meets first.
+#pragma once
+#include "stages/exact_tracing/exact_tracer.hpp"
+#include "stages/light_source.hpp"
+#include "stages/view.hpp"
+
+namespace nephroid::stages {
+
+struct TraceExactPhotons {
+    ExactTracer tracer;
+    LightSource light;
+    View view;       // of the object from the light; what the light reaches of it
+    int side = 1;    // photons along an edge
+    int mesh = 0;    // the object
+    bool other_branch_followed = true;  // at the first surface, by a pass of its own
+    bool lie_open = false;  // no receiver hides any part of another from the light
+
+    // Targets as TracePhotons'.
+    template <class F>
+    std::array<vec4<F>, 4> operator()(const PixelInput<F>& pixel) const {
+        const F u = pixel.position.x * F(1.0f / static_cast<float>(side)), v = pixel.position.y * F(1.0f / static_cast<float>(side));
+        ExactTracer::Ray<F> ray;
+        ray.position = view.perspective ? broadcast<F>(view.origin) : view.position(u, v, F(1.0f));
+        ray.direction = glm::normalize(view.ray(u, v));
+        ray.active = LaneMask<F>(true);
+        ray.index = as_uint(to_int_in_range(pixel.position.y) * side + to_int_in_range(pixel.position.x));
+        ray.by_chance = LaneMask<F>(tracer.chance_from_start);
+        LaneMask<F> lit;
+        const vec3<F> start = tracer.begin(ray, mesh, lit);
+        if (none(lit)) return {};
+        if (other_branch_followed) {
+            ray.ledger.started = ray.ledger.started - ray.ledger.not_followed;
+            ray.ledger.not_followed = vec3<F>(F(0.0f));
+        }
+        tracer.follow(ray);
+        if (tracer.branch == Branch::ReflectedInside) {
+            ray.ledger.clear(!ray.by_chance);
+            ray.landed = ray.landed & ray.by_chance;
+        }
+        // Caustic maps look from the light. What lands where that does not see has no place in them.
+        const LaneMask<F> hidden = ray.landed & !shown(ray);
+        ray.ledger.drop(hidden, ray.ledger.missed);
+        ray.landed = ray.landed & !hidden;
+        // A parallel light's path has no beginning.
+        const F window = light.window(ray.length);
+        ray.ledger.scale(ray.landed, vec3<F>(window), ray.ledger.missed);
+
+        const vec3<F> emitted = light.emission(start) * view.texel_measure(u, v, side, side);
+        const vec3<F> flux = select(ray.landed, emitted * ray.ledger.carried, vec3<F>(F(0.0f)));
+        const auto total = [&](const vec3<F>& share) { return select(lit, emitted.x * share.x + emitted.y * share.y + emitted.z * share.z, F(0.0f)); };
+        return {vec4<F>(ray.position, select(ray.landed, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
+                vec4<F>(total(ray.ledger.started), total(ray.ledger.absorbed), total(ray.ledger.not_followed), total(ray.ledger.correction)),
+                vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f))};
+    }
+
+private:
+    // Whether the light sees the landing place, specular objects aside, and from the side that was landed on.
+    template <class F>
+    LaneMask<F> shown(const ExactTracer::Ray<F>& ray) const {
+        const vec3<F> towards = light.towards(ray.position);
+        LaneMask<F> seen = ray.landed & !ray.unseen & (glm::dot(ray.normal, towards) > F(0.0f));
+        if (lie_open || none(seen)) return seen;
+        const TriangleHierarchyView& hierarchy = tracer.world.hierarchy;
+        const vec3<F> from = view.perspective ? broadcast<F>(view.origin) : ray.position - broadcast<F>(view.forward) * (glm::dot(ray.position - broadcast<F>(view.origin), broadcast<F>(view.forward)) - F(view.near_plane));
+        const F distance = hierarchy.nearest_receiver(from, -towards, seen).distance;
+        // The place is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
+        const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(ray.normal, towards);
+        return seen & (distance + slack >= glm::length(ray.position - from));
+    }
+};
+
+}  // namespace nephroid::stages

@@ -147,7 +147,7 @@ TEST_CASE("a sun's caustic lies before the scene's middle as well as behind it")
     sun.intensity = glm::vec3(2);
     scene.lights.push_back(sun);
     for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
-        stages::Settings settings = small(16, 16);
+        stages::Settings settings = small(16, 16, 1024, 512);
         settings.tracing = tracing;
         const Rendered r = render(device, scene, settings);
         double mean = 0;

@@ -32,12 +32,13 @@ std::string hash_of_picture(const stages::Picture& terms) {
 
 }  // namespace
 
-std::string hash_of_scene(Device& device, std::string_view name, const Around& around) {
+std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing tracing, const Around& around) {
     BuiltWorld built = build_world(device, scenes::bundled_scene(name));
     stages::Settings settings;
     settings.width = 64;
     settings.height = 48;
     settings.photons = settings.map_size = 64;
+    settings.tracing = tracing;
     std::optional<stages::Renderer> renderer;
     around([&] { renderer.emplace(device, built.world, settings); });
     throw_faults(renderer->faults());

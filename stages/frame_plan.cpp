@@ -48,6 +48,7 @@ private:
         for (int m = 0; m < static_cast<int>(world_.meshes.size()); ++m)
             if (specular(world_, world_.meshes[m])) seen.push_back(m);
         if (!seen.empty()) add({.kind = PassKind::HideBehind, .name = "hide behind", .why = "specular objects hide what is behind them", .reads = {"eye depth"}, .writes = {"points", "eye depth"}});
+        if (exact()) return plan_exact_view(seen);
         for (const int m : seen) {
             const Mesh& mesh = world_.meshes[m];
             const std::string& name = mesh.name;
@@ -59,22 +60,36 @@ private:
         }
     }
 
+    // All objects at once: a look goes from one to the next.
+    void plan_exact_view(const std::vector<int>& seen) {
+        bool dielectric = false;
+        for (const int m : seen) {
+            const Mesh& mesh = world_.meshes[m];
+            leave_out("layers and surroundings of " + mesh.name, "what it shows is looked for among the triangles");
+            dielectric = dielectric || world_.material_of(mesh).kind == SurfaceKind::Dielectric;
+        }
+        if (dielectric) add({.kind = PassKind::TraceSeen, .name = "through specular objects", .why = "glass is looked through", .reads = {"triangles", "points", "eye depth"}, .writes = {"refracted points", "emission"}});
+        if (!seen.empty()) add({.kind = PassKind::TraceSeen, .name = "reflected in specular objects", .why = "smooth surfaces reflect", .reads = {"triangles", "points", "eye depth"}, .writes = {"reflected points", "emission"}, .branch = Branch::Reflected});
+    }
+
+    bool exact() const { return settings_.tracing == Tracing::Exact; }
+
     void plan_light(int l, bool receivers, bool casters) {
         const Light& light = world_.lights[l];
         if (settings_.leave_out && !receivers) return leave_out("light " + light.name, "there is no receiver to shine on");
-        add({.kind = PassKind::ShadowMap, .name = "shadow map of " + light.name, .why = "surfaces hide each other from the light", .writes = {"shadow map"}, .light = l});
-        add({.kind = PassKind::DirectLight, .name = "light of " + light.name, .why = "receivers are lit", .reads = {"points", "shadow map"}, .writes = {"direct"}, .light = l});
+        if (exact()) leave_out("shadow map of " + light.name, "what hides a point from the light is looked for among the triangles");
+        else add({.kind = PassKind::ShadowMap, .name = "shadow map of " + light.name, .why = "surfaces hide each other from the light", .writes = {"shadow map"}, .light = l});
+        add({.kind = PassKind::DirectLight, .name = "light of " + light.name, .why = "receivers are lit", .reads = {"points", exact() ? "triangles" : "shadow map"}, .writes = {"direct"}, .light = l});
         if (!casters) return leave_out("caustics of " + light.name, "there is no specular object");
         bool receiver_map = false;
         for (int m = 0; m < static_cast<int>(world_.meshes.size()); ++m) {
             const Mesh& mesh = world_.meshes[m];
             if (!specular(world_, mesh)) continue;
             const std::string caustic = "caustics of " + light.name + " by " + mesh.name;
-            const bool exact = settings_.tracing == Tracing::Exact;
-            if (!receiver_map && exact) leave_out("receivers seen from " + light.name, "light is followed through the triangles");
-            if (!receiver_map && !exact) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
+            if (!receiver_map && exact()) leave_out("receivers seen from " + light.name, "light is followed through the triangles");
+            if (!receiver_map && !exact()) add({.kind = PassKind::ReceiverMap, .name = "receivers seen from " + light.name, .why = "refracted and reflected light lands on them", .writes = {"receiver map"}, .light = l});
             receiver_map = true;
-            if (exact) leave_out("layers of " + mesh.name + " from " + light.name, "light is followed through the triangles");
+            if (exact()) leave_out("layers of " + mesh.name + " from " + light.name, "light is followed through the triangles");
             else add({.kind = PassKind::CasterLayers, .name = "layers of " + mesh.name + " from " + light.name, .why = "light meets its two sides", .writes = {"object layers", "occluders"}, .light = l, .mesh = m});
             const Material& material = world_.material_of(mesh);
             const bool dielectric = material.kind == SurfaceKind::Dielectric;
@@ -93,10 +108,14 @@ private:
         const auto with = [&](PassKind kind, const char* what, const char* why, std::vector<std::string> reads, std::vector<std::string> writes) {
             add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = how.light, .mesh = how.mesh, .map = map, .branch = how.branch});
         };
-        with(PassKind::Photons, "photons", "the light is followed to where it lands", settings_.tracing == Tracing::Exact ? std::vector<std::string>{"triangles"} : std::vector<std::string>{"object layers", "occluders", "receiver map"}, {"photons"});
+        with(PassKind::Photons, "photons", "the light is followed to where it lands", exact() ? std::vector<std::string>{"triangles"} : std::vector<std::string>{"object layers", "occluders", "receiver map"}, {"photons"});
         with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});
         with(PassKind::CausticReceivers, "receivers", "the map's texels lie on surfaces", {"map view"}, {"map receivers"});
-        with(PassKind::SplatPhotons, "splat", "photons are added up", {"photons", "map view"}, {"map flux"});
+        const bool listed = settings_.technique == Technique::Hierarchical && hierarchical::traverses(settings_.hierarchical_variant);
+        if (listed && hierarchical::has_pyramid(settings_.hierarchical_variant, settings_.photons))
+            with(PassKind::ValidityPyramid, "validity pyramid", "photons that are not there are passed over together", {"photons", "map view"}, {"validity pyramid"});
+        if (listed) with(PassKind::TraversePhotons, "traversal", "photons that are there are listed", {"validity pyramid"}, {"photon list"});
+        with(PassKind::SplatPhotons, "splat", "photons are added up", listed ? std::vector<std::string>{"photons", "photon list", "map view"} : std::vector<std::string>{"photons", "map view"}, {"map flux"});
         with(PassKind::ResolveCaustic, "resolve", "flux becomes irradiance", {"map flux", "map receivers"}, {"caustic map"});
         with(PassKind::CausticLight, "shade", "receivers are lit by the caustic", {"points", "caustic map"}, {"caustic"});
     }

@@ -15,6 +15,8 @@ enum class PassKind : int {
     Photons,          // per caustic map
     FitCausticView,   // per caustic map
     CausticReceivers, // per caustic map
+    ValidityPyramid,  // per caustic map: hierarchical
+    TraversePhotons,  // per caustic map: hierarchical
     SplatPhotons,     // per caustic map
     ResolveCaustic,   // per caustic map
     SurfacePoints,    // what the eye sees

@@ -6,10 +6,15 @@
 #include <span>
 
 #include "pipeline/fp_environment.hpp"
+#include "stages/caustic_map/irradiance.hpp"
 #include "stages/caustic_view.hpp"
 #include "stages/exact_tracing/exact_photons.hpp"
+#include "stages/exact_tracing/exact_view.hpp"
+#include "stages/hierarchical_caustic_maps/photon_gather.hpp"
+#include "stages/hierarchical_caustic_maps/resolve_levels.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/mapping/vertex_photons.hpp"
+#include "stages/pass_draws.hpp"
 #include "stages/shading/lighting.hpp"
 #include "stages/shading/seen_through.hpp"
 
@@ -28,8 +33,8 @@ int log2_of(int n) {
 Texture target(Format format, int width, int height, const char* name, int layers = 1) {
     return Texture({.format = format, .width = width, .height = height, .layers = layers, .kind = layers > 1 ? TextureKind::Texture2DArray : TextureKind::Texture2D, .name = name});
 }
-Texture layered(Format format, int size, int layers, const char* name) {
-    return Texture({.format = format, .width = size, .height = size, .layers = layers, .kind = TextureKind::Texture2DArray, .name = name});
+Texture layered(Format format, int size, int layers, const char* name, int levels = 1) {
+    return Texture({.format = format, .width = size, .height = size, .layers = layers, .mip_levels = levels, .kind = TextureKind::Texture2DArray, .name = name});
 }
 
 // Points to be shaded: what the eye sees first, through something, and in something.
@@ -72,7 +77,6 @@ enum class Sides {
     Seen,   // and are seen from behind, and lit by what is bent round them, only if their material says so
     Outer,  // of closed meshes
 };
-PipelineState screen_state(const char* name) { return state(name, CullMode::None, depth_off); }
 
 double sum_channel(Executor& executor, const Texture& texture, int channel, std::vector<double>& rows) {
     executor.for_each(texture.height(), [&](int y, int) {
@@ -88,17 +92,14 @@ double sum_channel(Executor& executor, const Texture& texture, int channel, std:
 
 }  // namespace
 
-struct Renderer::Impl {
-    Device& device;
+struct Renderer::Impl : PassDraws {
     const World& world;
     Settings settings;
     FramePlan plan;
     std::vector<PassRecord> records;
     EnergyAudit audit;
-    Faults faults, frame_faults;
-    Observer* observer = nullptr;
+    Faults faults;
     ProgressListener* listener = nullptr;
-    PipelineStatistics statistics;  // of the pass that runs
 
     int width, height;  // of the samples
     float reach;
@@ -117,6 +118,7 @@ struct Renderer::Impl {
     std::vector<CausticPictures> maps;
     Texture map_flux, map_sides, wide_flux, wide_sides, map_accounts, wide_accounts;
     std::vector<Buffer<mapping::VertexArea<float>>> vertex_areas;  // per mesh; variant Vertices
+    hierarchical::PhotonGather gather;
     CausticViewFitter fitter;
     std::vector<double> row_sums;
 
@@ -126,20 +128,7 @@ struct Renderer::Impl {
 
     // ---- drawing
 
-    template <class P>
-    void draw(const P& program, const PipelineState& s, DrawCall call) {
-        call.observer = observer;
-        const DrawResult r = device.draw(program, s, call);
-        frame_faults.add(r.faults);
-        statistics += r.statistics;
-    }
-    void clear(const TargetView& view, const glm::vec4& value = glm::vec4(0.0f)) { frame_faults.add(device.clear(view, value)); }
-    template <class PS>
-    void draw_screen(const char* name, const PS& shader, const std::array<TargetView, max_render_targets>& targets, const BlendState& blend = blend_opaque) {
-        PipelineState s = screen_state(name);
-        s.blend.fill(blend);
-        draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = targets});
-    }
+    bool exact() const { return settings.tracing == Tracing::Exact; }
     bool specular(int mesh) const { return world.material_of(world.meshes[mesh]).kind != SurfaceKind::Lambert; }
     Texture2DView<Format::RGBA8Srgb> texture_of(const Material& m) const {
         return m.texture >= 0 ? Texture2DView<Format::RGBA8Srgb>(world.textures[m.texture]) : Texture2DView<Format::RGBA8Srgb>();
@@ -209,12 +198,18 @@ struct Renderer::Impl {
     void trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
     void trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
     void caustic_receivers(const Pass& pass);
+    PhotonPlacement placement(const Pass& pass, bool wide) const;
+    TargetView flux_target(const Light& light, bool wide) const;
     void splat(const Pass& pass);
+    void splat_sprites(const Pass& pass, bool wide);
+    void splat_hierarchical(const Pass& pass, bool wide);
     void resolve(const Pass& pass);
     void surface_points();
     void hide_behind();
     void impostor(const Pass& pass);
     void trace_seen(const Pass& pass);
+    void trace_seen_exactly(const Pass& pass);
+    void store_seen(const Pass& pass, const auto& shader);
     void emission_pass();
     void direct_light(const Pass& pass);
     void caustic_light(const Pass& pass);
@@ -223,11 +218,12 @@ struct Renderer::Impl {
     ReceiverMap light_receivers(const Light& light) const;
     SolidLayers solid(const View& view, int m, const LayerPictures& from) const;
     SpecularMaterial specular_material(int m) const;
+    int map_levels() const { return settings.technique == Technique::Hierarchical ? hierarchical::levels_of(settings.hierarchical_variant) : 1; }
     int wide_layers(const Light& light) const { return light.kind == LightKind::Directional ? 1 : 6; }
 };
 
 Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
-    : device(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
+    : PassDraws(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
     const bool any_specular = std::any_of(world.meshes.begin(), world.meshes.end(), [&](const Mesh& m) { return world.material_of(m).kind != SurfaceKind::Lambert; });
     reach = std::max(glm::length(world.high - world.low), 1e-6f);
     // Lights may stand outside the bounds of what they light.
@@ -247,9 +243,13 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         small_caustic = target(Format::RGBA32F, settings.width, settings.height, "caustic");
         small_emission = target(Format::RGBA32F, settings.width, settings.height, "emission");
     }
-    shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
-    shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
-    if (any_specular) {
+    if (exact()) {
+        faults.add(traced.build(device.executor(), world));
+    } else {
+        shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
+        shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
+    }
+    if (any_specular && !exact()) {
         seen_layers = LayerPictures(width, height, settings.solid_layers);
         impostor_depth = layered(Format::D32F, settings.impostor_size, 6, "impostor depth");
         impostor_normals = layered(Format::RGBA32F, settings.impostor_size, 6, "impostor normals");
@@ -257,9 +257,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     }
     if (!plan.maps.empty()) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
-        if (settings.tracing == Tracing::Exact) {
-            faults.add(traced.build(device.executor(), world));
-        } else {
+        if (!exact()) {
             receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
             receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
             caster_layers = LayerPictures(n, n, settings.solid_layers);
@@ -268,9 +266,10 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         }
         accounts = target(Format::RGBA32F, n, n, "accounts");
         losses = target(Format::RGBA32F, n, n, "losses");
-        map_flux = layered(Format::RGBA32F, size, 1, "map flux");
+        const int levels = map_levels();
+        map_flux = layered(Format::RGBA32F, size, 1, "map flux", levels);
         map_sides = layered(Format::RGBA32F, size, 1, "map receivers");
-        wide_flux = layered(Format::RGBA32F, wide, 6, "wide map flux");
+        wide_flux = layered(Format::RGBA32F, wide, 6, "wide map flux", levels);
         wide_sides = layered(Format::RGBA32F, wide, 6, "wide map receivers");
         map_accounts = target(Format::RGBA32F, size, size, "map accounts");
         wide_accounts = target(Format::RGBA32F, wide, wide, "wide map accounts");
@@ -283,6 +282,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
             photon_positions.push_back(target(Format::RGBA32F, n, n, "photon positions"));
             photon_fluxes.push_back(target(Format::RGBA32F, n, n, "photon fluxes"));
         }
+        if (settings.technique == Technique::Hierarchical) gather = hierarchical::PhotonGather(settings.hierarchical_variant, n);
         row_sums.resize(static_cast<std::size_t>(std::max(n, size)));
     }
     if (settings.variant == mapping::Variant::Vertices) {
@@ -295,6 +295,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         }
         measure_vertices();
     }
+    if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
 }
 
@@ -504,7 +505,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<Ta
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
     const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
-    if (settings.tracing == Tracing::Exact) trace_photons_exactly(pass, targets);
+    if (exact()) trace_photons_exactly(pass, targets);
     else trace_photons(pass, targets);
     if (!settings.audit) return;
     Executor& executor = device.executor();
@@ -524,7 +525,7 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
         clear(sides);
         clear(depth);
         draw_meshes(state("map receivers", CullMode::None, depth_greater), Sides::Seen, view, {sides}, depth, [&](int m) { return !specular(m); },
-                    [&](int m) { return mapping::StoreReceiverSide{world.meshes[m].triangles, view, m}; });
+                    [&](int m) { return StoreReceiverSide{world.meshes[m].triangles, view, m}; });
     };
     receivers(map.fit.view, map_sides.mip(), map.depth.mip());
     if (!map.fit.outside) return;
@@ -533,33 +534,48 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
         receivers(light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], wide_sides.mip(0, layer), map.wide_depth.mip(0, layer));
 }
 
-void Renderer::Impl::splat(const Pass& pass) {
+PhotonPlacement Renderer::Impl::placement(const Pass& pass, bool wide) const {
     const Light& light = world.lights[pass.light];
+    return {photon_positions[pass.map], maps[pass.map].fit.view, wide, light.kind != LightKind::Directional, cube_views(light.position), parallel_view(light), wide ? settings.map_size / 2 : settings.map_size};
+}
+
+// All levels of a map's flux.
+TargetView Renderer::Impl::flux_target(const Light& light, bool wide) const {
+    return wide ? TargetView{&wide_flux, 0, map_levels(), 0, wide_layers(light)} : TargetView{&map_flux, 0, map_levels(), 0, 1};
+}
+
+void Renderer::Impl::splat(const Pass& pass) {
     const CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
-    mapping::PlacePhoton place;
-    place.positions = photon_positions[pass.map];
-    place.fluxes = photon_fluxes[pass.map];
-    place.log2_side = log2_of(settings.photons);
-    place.focus = map.fit.view;
-    place.cube = light.kind != LightKind::Directional;
-    place.faces = cube_views(light.position);
-    place.parallel = parallel_view(light);
-    place.map_size = settings.map_size;
+    for (const bool wide : {false, true}) {
+        if (wide && !map.fit.outside) return;
+        if (settings.technique == Technique::Hierarchical) splat_hierarchical(pass, wide);
+        else splat_sprites(pass, wide);
+    }
+}
+
+void Renderer::Impl::splat_sprites(const Pass& pass, bool wide) {
     // Vertices of a mesh have no neighbours in the buffer.
-    place.sprite_size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
+    const float size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
+    const mapping::PlacePhoton place{placement(pass, wide), photon_fluxes[pass.map], log2_of(settings.photons), size};
     PipelineState s = screen_state("splat photons");
     s.topology = Topology::PointList;
     s.blend = {blend_additive};
     s.rasterizer.depth_clip = false;
-    const VertexSource all = vertex_count(std::int64_t{settings.photons} * settings.photons);
-    clear(map_flux.mip());
-    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {map_flux.mip()}});
-    if (!map.fit.outside) return;
-    place.wide = true;
-    place.map_size = settings.map_size / 2;
-    clear(wide_flux.layers(0, wide_layers(light)));
-    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = all, .render_targets = {wide_flux.layers(0, wide_layers(light))}});
+    const TargetView flux = flux_target(world.lights[pass.light], wide);
+    clear(flux);
+    draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = vertex_count(std::int64_t{settings.photons} * settings.photons), .render_targets = {flux}});
+}
+
+void Renderer::Impl::splat_hierarchical(const Pass& pass, bool wide) {
+    const PhotonPlacement place = placement(pass, wide);
+    hierarchical::SplatSize size{settings.hierarchical_variant, settings.splat_form, settings.sprite_size, settings.splat_threshold, map_levels(), settings.discard_wide_splats && hierarchical::may_discard(settings.hierarchical_variant),
+                                 {lit_side, specular_material(pass.mesh), pass.branch == Branch::Reflected}};
+    if (size.one_size == 0) size.one_size = hierarchical::default_size(settings.hierarchical_variant, place.map_size, settings.photons);
+    gather.splat(*this, place, photon_fluxes[pass.map], size, flux_target(world.lights[pass.light], wide));
+    if (!settings.audit || !size.discards_wide) return;
+    gather.count_discarded(*this, place, photon_fluxes[pass.map], size, accounts);
+    audit.discarded += sum_channel(device.executor(), accounts, 0, row_sums);
 }
 
 void Renderer::Impl::resolve(const Pass& pass) {
@@ -568,7 +584,14 @@ void Renderer::Impl::resolve(const Pass& pass) {
     if (map.fit.empty) return;
     const auto resolve_layer = [&](const Texture& flux, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
         const Texture& sums = size == settings.map_size ? map_accounts : wide_accounts;
-        draw_screen("resolve caustic map", mapping::ResolveIrradiance{flux, sides, depth, view, layer, size}, {irradiance.mip(0, layer), sums.mip()});
+        const ReceiverTexels receivers{sides, depth, view, layer, size};
+        const std::array<TargetView, max_render_targets> targets = {irradiance.mip(0, layer), sums.mip()};
+        if (map_levels() > 1) {
+            hierarchical::PhotonGather::sum_levels(*this, flux, layer, map_levels());
+            draw_screen("resolve caustic map", hierarchical::ResolveLevels{{flux, 1, layer}, receivers}, targets);
+        } else {
+            draw_screen("resolve caustic map", ResolveIrradiance{flux, receivers}, targets);
+        }
         if (!settings.audit) return;
         audit.deposited += sum_channel(device.executor(), sums, 0, row_sums);
         audit.beside += sum_channel(device.executor(), sums, 1, row_sums);
@@ -627,10 +650,29 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
     trace.impostor_albedo = impostor_albedo;
     trace.surroundings.picture = world.environment;
     trace.way = pass.branch == Branch::Reflected ? Way::Reflect : Way::Refract;
+    store_seen(pass, trace);
+}
+
+void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
+    TraceSeenExactly trace;
+    trace.tracer.world = traced.view();
+    trace.tracer.bounces = settings.bounces;
+    trace.tracer.branch = pass.branch;
+    trace.tracer.light = false;
+    trace.eye = eye();
+    trace.width = width, trace.height = height;
+    trace.first = points[first].positions;
+    trace.eye_depth = eye_depth;
+    trace.surroundings.picture = world.environment;
+    trace.pixel_measure = 4.0f * trace.eye.half.x * trace.eye.half.y / (static_cast<float>(width) * static_cast<float>(height));
+    store_seen(pass, trace);
+}
+
+void Renderer::Impl::store_seen(const Pass& pass, const auto& shader) {
     const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : refracted];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
-    draw(Program{CoverScreen{}, trace}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
+    draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
 }
 
 void Renderer::Impl::emission_pass() {
@@ -643,6 +685,12 @@ void Renderer::Impl::emission_pass() {
 
 void Renderer::Impl::direct_light(const Pass& pass) {
     const Light& light = world.lights[pass.light];
+    if (exact()) {
+        const View view = light.kind == LightKind::Directional ? parallel_view(light) : View();
+        for (const PointPictures& p : points)
+            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced.view().hierarchy}, {direct.mip()}, blend_additive);
+        return;
+    }
     ShadowMap shadows;
     shadows.cube = !has_shadow_view(light);
     if (shadows.cube) shadows.faces = cube_views(light.position);
@@ -690,13 +738,19 @@ void Renderer::Impl::run(const Pass& pass) {
             maps[pass.map].fit = fitter.fit(device.executor(), photon_positions[pass.map], photon_fluxes[pass.map], world.lights[pass.light], scene_centre(), reach);
             return;
         case PassKind::CausticReceivers: return caustic_receivers(pass);
+        case PassKind::ValidityPyramid:
+            if (!maps[pass.map].fit.empty) gather.build_pyramid(*this, placement(pass, false), photon_fluxes[pass.map]);
+            return;
+        case PassKind::TraversePhotons:
+            if (!maps[pass.map].fit.empty) gather.traverse(*this, maps[pass.map].fit.outside);
+            return;
         case PassKind::SplatPhotons: return splat(pass);
         case PassKind::ResolveCaustic: return resolve(pass);
         case PassKind::SurfacePoints: return surface_points();
         case PassKind::HideBehind: return hide_behind();
         case PassKind::SeenLayers: return draw_layers(eye(), pass.mesh, seen_layers);
         case PassKind::Impostor: return impostor(pass);
-        case PassKind::TraceSeen: return trace_seen(pass);
+        case PassKind::TraceSeen: return exact() ? trace_seen_exactly(pass) : trace_seen(pass);
         case PassKind::Surroundings: return draw_screen("surroundings", ShadeSurroundings{eye(), eye_depth, {world.environment}, 1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height)}, {emission.mip()}, blend_additive);
         case PassKind::Emission: return emission_pass();
         case PassKind::DirectLight: return direct_light(pass);

@@ -1,5 +1,6 @@
 // What a picture is asked to be.
 #pragma once
+#include "stages/hierarchical_caustic_maps/variant.hpp"
 #include "stages/image_space_tracer.hpp"
 #include "stages/mapping/photon_pass.hpp"
 
@@ -11,18 +12,27 @@ enum class Tracing : int {
     Exact,       // through the world's triangles
 };
 
+// How a photon buffer becomes caustic maps.
+enum class Technique : int { Mapping, Hierarchical };
+
 struct Settings {
     int width = 1024, height = 768;
     int samples_side = 1;  // a pixel is the mean of samples_side^2 samples
-    // mapping
-    mapping::Variant variant = mapping::Variant::TwoSided;
+    Technique technique = Technique::Mapping;
+    mapping::Variant variant = mapping::Variant::TwoSided;  // Hierarchical: TwoSided
+    // Hierarchical
+    hierarchical::Variant hierarchical_variant = hierarchical::Variant::Varying;
+    hierarchical::SplatForm splat_form = hierarchical::SplatForm::MaximumDistance;
+    float splat_threshold = 5;      // texels; from twice this width on a splat goes to a coarser level of its map
+    bool discard_wide_splats = false;  // those that are too wide for the coarsest level, which else takes them
+    // Both
     Tracing tracing = Tracing::ImageSpace;
     Intersection intersection = Intersection::Bisection;
     int iterations = 12;
     int photons = 1024;    // per light and object, along an edge; a power of two
     int map_size = 1024;   // caustic map, along an edge
     int receiver_map_size = 1024, shadow_map_size = 1024, impostor_size = 512;
-    float sprite_size = 0;     // texels; 0: as wide as the photons' spacing asks for
+    float sprite_size = 0;     // texels; 0: as the variant has it
     int bounces = 16;
     bool inner_reflections = true;  // follows what surfaces reflect in part inside objects
     int solid_layers = 4;      // pairs of front and back faces looked at per object; 1: as Wyman (2005)

@@ -49,6 +49,14 @@ struct StoreId {
     }
 };
 
+// The level whose texels are as large as so many of the finest: half the binary logarithm, from the exponent and a straight
+// line through the mantissa.
+template <class F>
+inline F mip_level(F texels) {
+    const LaneUint<F> bits = float_bits(max(texels, F(1.0f)));
+    return F(0.5f) * (to_float(as_int(bits >> 23)) - F(127.0f) + (bits_float((bits & LaneUint<F>(0x7fffffu)) | LaneUint<F>(0x3f800000u)) - F(1.0f)));
+}
+
 // Receivers: position and id; the shading normal on the side that is seen; albedo.
 struct StoreReceiver {
     StructuredView<TriangleFacts> triangles;
@@ -69,11 +77,8 @@ struct StoreReceiver {
             const vec3<F> along = in.world - broadcast<F>(view.origin);
             const F area = view.perspective ? F(pixel_measure) * glm::dot(along, along) : F(pixel_measure);
             const F texels = t.texels_per_square_metre * area;
-            // Half the binary logarithm, from the exponent and a straight line through the mantissa.
-            const LaneUint<F> bits = float_bits(max(texels, F(1.0f)));
-            const F logarithm = to_float(as_int(bits >> 23)) - F(127.0f) + (bits_float((bits & LaneUint<F>(0x7fffffu)) | LaneUint<F>(0x3f800000u)) - F(1.0f));
             constexpr Sampler sampler{.filter = Filter::Trilinear, .address_u = AddressMode::Wrap, .address_v = AddressMode::Wrap};
-            albedo = albedo * vec3<F>(base_texture.sample<F>(sampler, in.texcoord, F(0.5f) * logarithm));
+            albedo = albedo * vec3<F>(base_texture.sample<F>(sampler, in.texcoord, mip_level(texels)));
         }
         return {vec4<F>(in.world, surface_id<F>(mesh, front)), vec4<F>(select(front, n, -n), F(0.0f)), vec4<F>(albedo, F(1.0f))};
     }

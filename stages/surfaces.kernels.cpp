@@ -1,6 +1,5 @@
 // Programs that draw surfaces.
 #include "pipeline/kernels.hpp"
-#include "stages/mapping/splat_pass.hpp"
 #include "stages/shading/seen_through.hpp"
 #include "stages/surfaces.hpp"
 
@@ -13,5 +12,4 @@ template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometrySh
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometryShader, StoreEmission>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometryShader, StoreImpostor>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometryShader, HideReceivers>;
-template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometryShader, mapping::StoreReceiverSide>;
 }  // namespace nephroid

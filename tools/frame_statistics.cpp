@@ -23,7 +23,7 @@ Json to_json(const PipelineStatistics& s) {
 
 Json to_json(const stages::EnergyAudit& a) {
     return {{"emitted", a.emitted}, {"deposited", a.deposited}, {"absorbed", a.absorbed}, {"not_followed", a.not_followed}, {"trapped", a.trapped},
-            {"missed", a.missed}, {"beside", a.beside}, {"shading_normal_correction", a.correction}, {"imbalance", a.imbalance()}};
+            {"missed", a.missed}, {"beside", a.beside}, {"discarded", a.discarded}, {"shading_normal_correction", a.correction}, {"imbalance", a.imbalance()}};
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ void check_request(const RenderArguments& a, const CLI::App& command) {
     if (a.request.error == 0 && a.request.budget == 0) return;
     const char* asked = a.request.error > 0 ? "--error" : "--budget";
     if (a.options.technique != "auto") throw std::runtime_error(std::string(asked) + ": needs --technique auto");
-    for (const char* picked : {"--variant", "--tracing", "--intersection", "--iterations", "--photons", "--map-size", "--splat-size", "--bounces", "--inner-reflections", "--depth-layers"})
+    for (const char* picked : {"--variant", "--tracing", "--intersection", "--iterations", "--photons", "--map-size", "--splat-size", "--splat-threshold", "--splat-form", "--discard-wide-splats", "--bounces", "--inner-reflections", "--depth-layers"})
         if (command.count(picked)) throw std::runtime_error(std::string(asked) + ": --technique auto picks " + picked + ", which is given as well");
 }
 

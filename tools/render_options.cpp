@@ -10,11 +10,29 @@
 #include <stdexcept>
 
 #include "pipeline/texture.hpp"
+#include "tools/joined.hpp"
 #include "tools/number_range.hpp"
 
 namespace nephroid {
 
 namespace {
+
+struct NamedMappingVariant {
+    const char* name;
+    stages::mapping::Variant variant;
+};
+constexpr NamedMappingVariant mapping_variants[] = {
+    {"two-sided", stages::mapping::Variant::TwoSided}, {"tutorial", stages::mapping::Variant::Tutorial}, {"vertices", stages::mapping::Variant::Vertices}};
+std::vector<std::string> names_of(const auto& variants) {
+    std::vector<std::string> names;
+    for (const auto& v : variants) names.push_back(v.name);
+    return names;
+}
+std::vector<std::string> all_variants() {
+    std::vector<std::string> names = names_of(mapping_variants);
+    for (const std::string& name : names_of(stages::hierarchical::named_variants)) names.push_back(name);
+    return names;
+}
 
 // "1024^2" or "1048576": photons; the edge of the smallest square of a power of two that holds as many.
 int parse_photons(const std::string& text) {
@@ -48,15 +66,20 @@ void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
 
 void RenderOptions::add_to(CLI::App& c) {
     SceneOptions::add_to(c);
-    c.add_option("--technique", technique, "How caustics are made: auto or mapping")->check(CLI::IsMember({"auto", "mapping"}))->capture_default_str();
-    c.add_option("--variant", variant, "mapping: two-sided refraction; the tutorial's single one; photons from the object's vertices")
-        ->check(CLI::IsMember({"two-sided", "tutorial", "vertices"}))->capture_default_str();
+    c.add_option("--technique", technique, "How caustics are made: auto, mapping or hierarchical")->check(CLI::IsMember({"auto", "mapping", "hierarchical"}))->capture_default_str();
+    c.add_option("--variant", variant,
+                 "mapping: two-sided refraction (default); the tutorial's single one; photons from the object's vertices. hierarchical: " + joined(names_of(stages::hierarchical::named_variants)) + " (default)")
+        ->check(CLI::IsMember(all_variants()));
     c.add_option("--tracing", tracing, "How light is followed: through pictures from the light, one object; through the triangles, any objects one after the other")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
     c.add_option("--intersection", intersection, "Image space: how a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
     c.add_option("--map-size", settings.map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
-    c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing asks for")->check(number_in(0, 64))->capture_default_str();
+    c.add_option("--splat-threshold", settings.splat_threshold, "varying: from twice so many texels on a splat goes to a coarser level of the map")->check(number_in(1, 64))->capture_default_str();
+    c.add_option("--splat-form", splat_form, "varying, varying-single, interpolated: splats as wide as the farther neighbour is away, or as the area between neighbours asks for")
+        ->check(CLI::IsMember({"max-distance", "area"}))->capture_default_str();
+    c.add_flag("--discard-wide-splats", settings.discard_wide_splats, "varying, varying-single: leave out what is too wide for the map's coarsest level");
+    c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing, or the variant, asks for")->check(number_in(0, 64))->capture_default_str();
     c.add_option("--bounces", settings.bounces, "Specular surfaces that light meets, at most")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_flag("--inner-reflections,!--no-inner-reflections", settings.inner_reflections, "Follow what surfaces reflect in part inside objects (default), or leave it out");
     c.add_option("--depth-layers", settings.solid_layers, "Image space: times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
@@ -65,12 +88,36 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--lanes", lanes, "1, 4, 8 or 16; 0: the widest there is")->check(CLI::IsMember({0, 1, 4, 8, 16}))->capture_default_str();
 }
 
+void RenderOptions::finish_variant() {
+    const bool hierarchical = technique == "hierarchical";
+    settings.technique = hierarchical ? stages::Technique::Hierarchical : stages::Technique::Mapping;
+    if (variant.empty()) variant = hierarchical ? "varying" : "two-sided";
+    const auto check = [&](const auto& variants) {
+        const auto found = std::find_if(std::begin(variants), std::end(variants), [&](const auto& v) { return variant == v.name; });
+        if (found == std::end(variants)) throw std::runtime_error("--variant: " + variant + " is none of --technique " + technique + ", which has " + joined(names_of(variants)));
+        return found->variant;
+    };
+    if (!hierarchical) {
+        settings.variant = check(mapping_variants);
+        if (settings.discard_wide_splats) throw std::runtime_error("--discard-wide-splats: --technique " + technique + " has no splats that are too wide");
+        return;
+    }
+    const stages::hierarchical::Variant v = settings.hierarchical_variant = check(stages::hierarchical::named_variants);
+    settings.variant = stages::mapping::Variant::TwoSided;
+    settings.splat_form = splat_form == "area" ? stages::hierarchical::SplatForm::Area : stages::hierarchical::SplatForm::MaximumDistance;
+    constexpr int step = stages::hierarchical::map_size_step;
+    if (stages::hierarchical::levels_of(v) > 1 && settings.map_size % step != 0)
+        throw std::runtime_error("--map-size: --variant " + variant + " needs a multiple of " + std::to_string(step) + ", got " + std::to_string(settings.map_size));
+    if (settings.sprite_size > 0 && !stages::hierarchical::has_one_size(v)) throw std::runtime_error("--splat-size: --variant " + variant + " has splats of many sizes");
+    if (settings.discard_wide_splats && !stages::hierarchical::may_discard(v)) throw std::runtime_error("--discard-wide-splats: --variant " + variant + " has no splats that are too wide");
+}
+
 void RenderOptions::finish(const scenes::Scene& loaded) {
     settings.photons = parse_photons(photons);
-    settings.variant = variant == "tutorial" ? stages::mapping::Variant::Tutorial : variant == "vertices" ? stages::mapping::Variant::Vertices : stages::mapping::Variant::TwoSided;
+    finish_variant();
     settings.tracing = tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
     if (settings.tracing == stages::Tracing::Exact && settings.variant != stages::mapping::Variant::TwoSided)
-        throw std::runtime_error("--tracing exact: goes with --variant two-sided, not with " + variant);
+        throw std::runtime_error("--tracing exact: does not go with --variant " + variant);
     settings.intersection = intersection == "newton" ? stages::Intersection::Newton : intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
     while (settings.samples_side * settings.samples_side < samples) ++settings.samples_side;
     picture_size(loaded, settings.width, settings.height);

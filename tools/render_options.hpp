@@ -9,7 +9,7 @@
 namespace nephroid {
 
 struct RenderOptions : SceneOptions {
-    std::string technique = "mapping", variant = "two-sided", tracing = "image-space", intersection = "bisection";
+    std::string technique = "mapping", variant, splat_form = "max-distance", tracing = "image-space", intersection = "bisection";
     std::string photons = "1024^2";
     int samples = 1, threads = 0, lanes = 0;
     stages::Settings settings;
@@ -18,6 +18,9 @@ struct RenderOptions : SceneOptions {
     void add_to(CLI::App& command);
     // Checks the texts and fills the settings; the scene decides a size that was not given. Throws std::runtime_error.
     void finish(const scenes::Scene& scene);
+
+private:
+    void finish_variant();
 };
 
 }  // namespace nephroid

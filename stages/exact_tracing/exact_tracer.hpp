@@ -1,5 +1,5 @@
-// Light followed through any chain of specular surfaces, of any objects, to the receiver that it lands on, by exact
-// intersection with the world's triangles.
+// Light, or a look, followed through any chain of specular surfaces, of any objects, to the receiver that it lands on, by
+// exact intersection with the world's triangles.
 //
 // What is done at a surface is what image_space_tracer.hpp does, and the branches and accounts are the same. Where an
 // interpolated normal would send light to the wrong side of its triangle, the triangle's own counts; the adjoint correction
@@ -18,6 +18,7 @@ struct ExactTracer {
     Partial partial = Partial::NotFollowed;
     bool chance_from_start = false;  // what surfaces after the first do in part is left to chance from the second on
     std::uint64_t seed = 0;
+    bool light = true;  // else a look: nothing is corrected for, radiance is scaled, and sides of receivers that nobody sees are not there
 
     template <class F>
     struct Ray {
@@ -27,6 +28,9 @@ struct ExactTracer {
         vec3<F> attenuation{F(0.0f)};  // of what the ray is in
         LaneMask<F> active;
         LaneMask<F> landed{false};
+        TriangleHierarchyView::Hit<F> landing{F(0.0f), F(0.0f), F(0.0f), LaneInt<F>(-1)};
+        LaneMask<F> escaped{false};  // a look that met nothing
+        vec3<F> escaping{F(0.0f)};   // what was carried then
         F length{0.0f};           // of the path so far
         LaneUint<F> index;        // of its random numbers
         LaneMask<F> by_chance;    // behind the surface at which light is handed on
@@ -53,21 +57,27 @@ struct ExactTracer {
         return position;
     }
 
-    // On from there.
+    // On from there; from event 0, a look from its beginning.
     template <class F>
-    void follow(Ray<F>& ray) const {
+    void follow(Ray<F>& ray, int event = 1) const {
         PathLedger<F>& ledger = ray.ledger;
-        for (int event = 1; any(ray.active); ++event) {
-            const TriangleHierarchyView::Hit<F> hit = world.hierarchy.nearest(ray.position, ray.direction, ray.active);
+        for (; any(ray.active); ++event) {
+            const TriangleHierarchyView::Hit<F> hit = light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active) : nearest_seen(ray.position, ray.direction, ray.active);
             const LaneMask<F> found = ray.active & hit.found();
             ledger.drop(ray.active & !found, ledger.missed);
+            if (!light) {
+                const LaneMask<F> gone = ray.active & !found;
+                ray.escaped = ray.escaped | gone;
+                ray.escaping = select(gone, ledger.carried, ray.escaping);
+            }
             ray.active = found;
             if (none(found)) return;
-            absorb(ray, found, ray.attenuation, hit.distance);
-            ray.length = select(found, ray.length + hit.distance, ray.length);
             const vec3<F> position = world.position(hit);
             const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), found);
             const LaneMask<F> lands = found & (optics.receives > F(0.0f));
+            if (event == 0) ray.attenuation = select(glm::dot(ray.direction, world.normals.template load<F>(hit.triangle).triangle) > F(0.0f), optics.attenuation, vec3<F>(F(0.0f)));
+            absorb(ray, found, ray.attenuation, hit.distance);
+            ray.length = select(found, ray.length + hit.distance, ray.length);
             if (any(lands)) {
                 ray.landed = ray.landed | lands;
                 ray.position = select(lands, position, ray.position);
@@ -75,6 +85,9 @@ struct ExactTracer {
                 const LaneMask<F> front = glm::dot(ray.direction, plane) < F(0.0f);
                 ray.normal = select(lands, select(front, plane, -plane), ray.normal);
                 ray.unseen = ray.unseen | (lands & !front & (optics.two_sided == F(0.0f)));
+                ray.landing.second = select(lands, hit.second, ray.landing.second);
+                ray.landing.third = select(lands, hit.third, ray.landing.third);
+                ray.landing.triangle = select(lands, hit.triangle, ray.landing.triangle);
             }
             ray.active = found & !lands;
             if (event == bounces) {
@@ -87,6 +100,27 @@ struct ExactTracer {
     }
 
 private:
+    // Past the sides of receivers that are not seen; the distance is from the beginning.
+    template <class F>
+    TriangleHierarchyView::Hit<F> nearest_seen(vec3<F> origin, const vec3<F>& direction, LaneMask<F> active) const {
+        TriangleHierarchyView::Hit<F> nearest = world.hierarchy.nearest(origin, direction, active), hit = nearest;
+        F before(0.0f);
+        for (LaneMask<F> looks = active;;) {
+            const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), looks & hit.found());
+            const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
+            looks = looks & hit.found() & (optics.receives > F(0.0f)) & (optics.two_sided == F(0.0f)) & (glm::dot(direction, plane) >= F(0.0f));
+            if (none(looks)) return nearest;
+            const F clear = world.hierarchy.error_at(origin) * (abs(plane.x) + abs(plane.y) + abs(plane.z));
+            before = select(looks, before + hit.distance, before);
+            origin = select(looks, world.position(hit) + plane * clear, origin);
+            hit = world.hierarchy.nearest(origin, direction, looks);
+            nearest.distance = select(looks, before + hit.distance, nearest.distance);
+            nearest.second = select(looks, hit.second, nearest.second);
+            nearest.third = select(looks, hit.third, nearest.third);
+            nearest.triangle = select(looks, hit.triangle, nearest.triangle);
+        }
+    }
+
     template <class F>
     static void absorb(Ray<F>& ray, LaneMask<F> mask, const vec3<F>& attenuation, F distance) {
         const LaneMask<F> absorbs = mask & (attenuation.x + attenuation.y + attenuation.z > F(0.0f));
@@ -156,8 +190,10 @@ private:
         ledger.scale(meets, optics.tint, ledger.absorbed);
 
         const vec3<F> out = glm::normalize(select(reflects, back, onwards));
+        // Radiance is scaled by (n_eye / n_receiver)^2.
+        if (!light) ledger.carried = select(meets & solid & !reflects, ledger.carried * (eta * eta), ledger.carried);
         // Interpolated normals on the light's side (Veach 1997, 5.3), where one was taken.
-        const LaneMask<F> corrected = meets & ((reflects & !into) | ((!reflects) & solid & !wrong));
+        const LaneMask<F> corrected = LaneMask<F>(light) & meets & ((reflects & !into) | ((!reflects) & solid & !wrong));
         const F factor = adjoint_factor(abs(glm::dot(d, n)), abs(glm::dot(out, n)), abs(glm::dot(d, g)), abs(glm::dot(out, g)));
         const vec3<F> after = ledger.carried * factor;
         ledger.correction = ledger.correction + select(corrected, after - ledger.carried, vec3<F>(F(0.0f)));

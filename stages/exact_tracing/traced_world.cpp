@@ -10,7 +10,14 @@ Faults TracedWorld::build(Executor& executor, const World& world) {
     const auto meshes = static_cast<std::int64_t>(world.meshes.size());
     normals_ = Buffer<TriangleNormals<float>>(hierarchy_.size(), "normals of triangles");
     optics_ = Buffer<SurfaceOptics<float>>(meshes, "optics of meshes");
-    if (normals_.size() != hierarchy_.size() || optics_.size() != meshes) faults.add("triangles", "there is no memory to trace them", hierarchy_.size(), 0);
+    textured_.clear();
+    for (std::int64_t m = 0; m < meshes; ++m) {
+        const Material& material = world.material_of(world.meshes[static_cast<std::size_t>(m)]);
+        if (material.kind == SurfaceKind::Lambert && material.texture >= 0) textured_.push_back({static_cast<std::int32_t>(m), world.textures[static_cast<std::size_t>(material.texture)]});
+    }
+    const std::int64_t with_texels = textured_.empty() ? 0 : hierarchy_.size();
+    texels_ = Buffer<TriangleTexels<float>>(with_texels, "texture coordinates of triangles");
+    if (normals_.size() != hierarchy_.size() || optics_.size() != meshes || texels_.size() != with_texels) faults.add("triangles", "there is no memory to trace them", hierarchy_.size(), 0);
     else fill(executor, world);
     return faults;
 }
@@ -37,6 +44,9 @@ void TracedWorld::fill(Executor& executor, const World& world) {
             const std::uint32_t* index = mesh.indices.data() + 3 * local;
             for (int c = 0; c < 3; ++c) normals_[i].corner[c] = mesh.vertices[index[c]].normal;
             normals_[i].triangle = mesh.triangles[local].normal;
+            if (texels_.size() == 0) continue;
+            for (int c = 0; c < 3; ++c) texels_[i].corner[c] = mesh.vertices[index[c]].texcoord;
+            texels_[i].per_square_metre = mesh.triangles[local].texels_per_square_metre;
         }
     });
 }

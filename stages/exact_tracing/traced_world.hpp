@@ -1,5 +1,8 @@
 // A world as light is followed through it exactly: its triangles, what bends at them, and what lies on the way.
 #pragma once
+#include <vector>
+
+#include "pipeline/texture_view.hpp"
 #include "stages/exact_tracing/triangle_hierarchy.hpp"
 
 namespace nephroid::stages {
@@ -9,6 +12,17 @@ template <class F>
 struct TriangleNormals {
     vec3<F> corner[3];
     vec3<F> triangle;
+};
+
+// Of a base colour's texture.
+template <class F>
+struct TriangleTexels {
+    vec2<F> corner[3];
+    F per_square_metre;
+};
+struct TexturedMesh {
+    std::int32_t mesh = 0;
+    Texture2DView<Format::RGBA8Srgb> picture{};
 };
 
 // A mesh's material, in numbers that lanes can fetch.
@@ -27,6 +41,9 @@ struct TracedWorldView {
     TriangleHierarchyView hierarchy;
     StructuredView<TriangleNormals> normals;  // as the hierarchy's triangles
     const SurfaceOptics<float>* optics = nullptr;  // of meshes
+    StructuredView<TriangleTexels> texels{};       // as the hierarchy's triangles, where there are textured receivers
+    const TexturedMesh* textured = nullptr;
+    std::int32_t textured_count = 0;
 
     // Where a triangle was met: on its plane, down to rounding, whatever the distance was.
     template <class F>
@@ -74,7 +91,7 @@ public:
     void refit(Executor& executor, const World& world);
     // Whether no receiver hides any part of another from a light: they are few, flat, and bend round it.
     static bool lies_open(const World& world, const Light& light);
-    TracedWorldView view() const { return {hierarchy_.view(), normals_, optics_.data()}; }
+    TracedWorldView view() const { return {hierarchy_.view(), normals_, optics_.data(), texels_, textured_.data(), static_cast<std::int32_t>(textured_.size())}; }
 
 private:
     void fill(Executor& executor, const World& world);
@@ -82,6 +99,8 @@ private:
     TriangleHierarchy hierarchy_;
     Buffer<TriangleNormals<float>> normals_;
     Buffer<SurfaceOptics<float>> optics_;
+    Buffer<TriangleTexels<float>> texels_;
+    std::vector<TexturedMesh> textured_;
 };
 
 }  // namespace nephroid::stages

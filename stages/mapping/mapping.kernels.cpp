@@ -10,5 +10,4 @@ using namespace stages::mapping;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, TracePhotons>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, TraceVertexPhotons, NoGeometryShader, StoreTracedPhoton>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, PlacePhoton, NoGeometryShader, DepositFlux>;
-template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, ResolveIrradiance>;
 }  // namespace nephroid

@@ -30,15 +30,11 @@ std::string hash_of_picture(const stages::Picture& terms) {
     return hash.finish();
 }
 
-}  // namespace
-
-std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing tracing, const Around& around) {
+std::string hash_of(Device& device, std::string_view name, const stages::Settings& from, const Around& around) {
+    stages::Settings settings = from;
     BuiltWorld built = build_world(device, scenes::bundled_scene(name));
-    stages::Settings settings;
     settings.width = 64;
     settings.height = 48;
-    settings.photons = settings.map_size = 64;
-    settings.tracing = tracing;
     std::optional<stages::Renderer> renderer;
     around([&] { renderer.emplace(device, built.world, settings); });
     throw_faults(renderer->faults());
@@ -46,6 +42,26 @@ std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing
     around([&] { faults = renderer->render(); });
     throw_faults(faults);
     return hash_of_picture(renderer->picture());
+}
+
+}  // namespace
+
+std::string hash_of_scene(Device& device, std::string_view name, const Around& around) { return hash_of_scene(device, name, stages::Tracing::ImageSpace, around); }
+
+std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing tracing, const Around& around) {
+    stages::Settings settings;
+    settings.photons = settings.map_size = 64;
+    settings.tracing = tracing;
+    return hash_of(device, name, settings, around);
+}
+
+std::string hash_of_scene(Device& device, std::string_view name, stages::hierarchical::Variant variant, const Around& around) {
+    stages::Settings settings;
+    settings.technique = stages::Technique::Hierarchical;
+    settings.hierarchical_variant = variant;
+    settings.photons = 128;
+    settings.map_size = stages::hierarchical::merges(variant) ? 64 : 256;
+    return hash_of(device, name, settings, around);
 }
 
 }  // namespace test

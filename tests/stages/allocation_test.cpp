@@ -14,15 +14,32 @@ TEST_CASE("thirty frames with a moving light and camera allocate nothing after t
         MESSAGE("SKIPPED: a sanitizer has the heap to itself, so allocations are not counted in this build");
         return;
     }
+    struct Case {
+        const char* name;
+        int threads;
+        stages::Technique technique;
+        stages::hierarchical::Variant variant;
+        stages::Tracing tracing = stages::Tracing::ImageSpace;
+    };
+    using stages::hierarchical::Variant;
+    std::vector<Case> cases;
     for (const char* name : {"glass-sphere", "pool"}) {
-        for (const auto& [tracing, threads] : {std::pair{stages::Tracing::ImageSpace, 1}, {stages::Tracing::ImageSpace, 2}, {stages::Tracing::ImageSpace, 3}, {stages::Tracing::Exact, 1}, {stages::Tracing::Exact, 3}}) {
-            const std::string text(name);
+        for (const int threads : {1, 2, 3}) cases.push_back({name, threads, stages::Technique::Mapping, Variant::Varying});
+        for (const int threads : {1, 3}) cases.push_back({name, threads, stages::Technique::Mapping, Variant::Varying, stages::Tracing::Exact});
+        for (const Variant variant : {Variant::Gather, Variant::CombineAll, Variant::Varying}) cases.push_back({name, 2, stages::Technique::Hierarchical, variant});
+    }
+    for (const Case& c : cases) {
+        {
+            const std::string text(c.name);
             CAPTURE(text);
-            CAPTURE(threads);
-            Device device({.threads = threads});
+            CAPTURE(c.threads);
+            CAPTURE(static_cast<int>(c.variant));
+            Device device({.threads = c.threads});
             stages::Settings settings = small(96, 72, 128, 128);
-            settings.tracing = tracing;
-            Rendered first = render(device, scenes::bundled_scene(name), settings);
+            settings.technique = c.technique;
+            settings.hierarchical_variant = c.variant;
+            settings.tracing = c.tracing;
+            Rendered first = render(device, scenes::bundled_scene(c.name), settings);
             stages::World& world = first.built.world;
             const stages::Light light = world.lights[0];
             const stages::Camera camera = world.camera;

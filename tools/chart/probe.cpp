@@ -149,7 +149,9 @@ double expected_cost(const Probe& probe, const stages::Settings& s) {
             case CausticReceivers:
             case ResolveCaustic: passes.push_back(scaled(pass, texels)); break;
             case CasterLayers: passes.push_back(scaled(pass, photons)); break;
-            case Photons: passes.push_back(scaled(pass, photons)); break;
+            case Photons:
+            case ValidityPyramid:
+            case TraversePhotons: passes.push_back(scaled(pass, photons)); break;
             case FitCausticView: passes.push_back(pass); break;
             case SplatPhotons: {
                 // Splats are as wide as photons are apart, and three texels at least.

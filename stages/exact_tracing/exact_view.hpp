@@ -1,0 +1,100 @@
+// What the eye sees through specular objects and in them, and which of it a light reaches, by exact intersection.
+#pragma once
+#include "stages/exact_tracing/exact_tracer.hpp"
+#include "stages/shading/lighting.hpp"
+#include "stages/shading/seen_through.hpp"
+
+namespace nephroid::stages {
+
+// One Fresnel branch at the first surface, for the pixels in which something specular is that; from there on as far as there
+// is a way through. The others are discarded.
+struct TraceSeenExactly {
+    ExactTracer tracer;  // of looks
+    View eye;
+    int width = 1, height = 1;
+    Texture2DView<Format::RGBA32F> first;    // what the eye sees first: w is 0 where that is no receiver
+    Texture2DView<Format::D32F> eye_depth;   // of everything
+    Surroundings surroundings;
+    float pixel_measure = 0;  // of the picture's pixels at unit distance
+
+    // Targets as TraceSeen's.
+    template <class F>
+    PixelOutput<F, 4> operator()(const PixelInput<F>& pixel) const {
+        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
+        const LaneMask<F> mine = (eye_depth.fetch<F>(x, y).x > F(0.0f)) & (first.fetch<F>(x, y).w == F(0.0f));
+        PixelOutput<F, 4> out{};
+        out.discard = !mine;
+        if (none(mine)) return out;
+        ExactTracer::Ray<F> ray;
+        ray.position = broadcast<F>(eye.origin);
+        ray.direction = glm::normalize(eye.ray(pixel.position.x * F(1.0f / static_cast<float>(width)), pixel.position.y * F(1.0f / static_cast<float>(height))));
+        ray.active = mine;
+        ray.index = as_uint(y * width + x);
+        ray.by_chance = LaneMask<F>(false);
+        tracer.follow(ray, 0);
+        const LaneMask<F> landed = mine & ray.landed;
+        const vec4<F> zero(F(0.0f));
+        out.color[3] = select(mine & ray.escaped, vec4<F>(surroundings.radiance(ray.direction) * ray.escaping, F(0.0f)), zero);
+        if (none(landed)) return out;
+
+        const TracedWorldView& world = tracer.world;
+        const LaneInt<F> mesh = select(landed, world.mesh(ray.landing), LaneInt<F>(0));
+        const TriangleNormals<F> normals = world.normals.template load<F>(ray.landing.triangle);
+        const F second = ray.landing.second, third = ray.landing.third, rest = F(1.0f) - second - third;
+        const LaneMask<F> front = glm::dot(ray.direction, normals.triangle) < F(0.0f);
+        const vec3<F> n = glm::normalize(normals.corner[0] * rest + normals.corner[1] * second + normals.corner[2] * third);
+        const vec3<F> albedo = world.template optics_of<F>(mesh, landed).tint * texture(mesh, ray, landed);
+        out.color[0] = select(landed, vec4<F>(ray.position, to_float(mesh * 2 + 1) + select(front, F(1.0f), F(0.0f))), zero);
+        out.color[1] = select(landed, vec4<F>(select(front, n, -n), F(0.0f)), zero);
+        out.color[2] = select(landed, vec4<F>(albedo * ray.ledger.carried, F(1.0f)), zero);
+        return out;
+    }
+
+private:
+    template <class F>
+    vec3<F> texture(LaneInt<F> mesh, const ExactTracer::Ray<F>& ray, LaneMask<F> landed) const {
+        const TracedWorldView& world = tracer.world;
+        vec3<F> color(F(1.0f));
+        for (std::int32_t k = 0; k < world.textured_count; ++k) {
+            const LaneMask<F> here = landed & (mesh == LaneInt<F>(world.textured[k].mesh));
+            if (none(here)) continue;
+            const TriangleTexels<F> t = world.texels.template load<F>(select(here, ray.landing.triangle, LaneInt<F>(0)));
+            const vec2<F> at = t.corner[0] * (F(1.0f) - ray.landing.second - ray.landing.third) + t.corner[1] * ray.landing.second + t.corner[2] * ray.landing.third;
+            constexpr Sampler sampler{.filter = Filter::Trilinear, .address_u = AddressMode::Wrap, .address_v = AddressMode::Wrap};
+            // As if it were seen face to face, from as far as the way is long.
+            const vec3<F> texel(world.textured[k].picture.sample<F>(sampler, at, mip_level(t.per_square_metre * F(pixel_measure) * (ray.length * ray.length))));
+            color = select(here, texel, color);
+        }
+        return color;
+    }
+};
+
+// Direct light as ShadeDirect, with a ray from the light to every point.
+struct ShadeDirectExactly {
+    SurfacePoints points;
+    LightSource light;
+    View view;  // of a directional light
+    TriangleHierarchyView hierarchy;
+    template <class F>
+    vec4<F> operator()(const PixelInput<F>& pixel) const {
+        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
+        const vec4<F> p = points.positions.fetch<F>(x, y);
+        if (none(p.w > F(0.0f))) return vec4<F>(F(0.0f));
+        const vec3<F> position(p), n(points.normals.fetch<F>(x, y)), albedo(points.albedo.fetch<F>(x, y));
+        const vec3<F> irradiance = light.irradiance(position, n);
+        const LaneMask<F> faces = (p.w > F(0.0f)) & (irradiance.x + irradiance.y + irradiance.z > F(0.0f));
+        if (none(faces)) return vec4<F>(F(0.0f));
+        return select(faces & reaches(light, view, hierarchy, position, n, faces), lambert(albedo, irradiance), vec4<F>(F(0.0f)));
+    }
+
+    // The point is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
+    template <class F>
+    static LaneMask<F> reaches(const LightSource& light, const View& view, const TriangleHierarchyView& hierarchy, const vec3<F>& position, const vec3<F>& n, LaneMask<F> active) {
+        const vec3<F> towards = light.towards(position), forward = broadcast<F>(view.forward);
+        const vec3<F> from = light.kind != LightKind::Directional ? broadcast<F>(light.position) : position - forward * (glm::dot(position - broadcast<F>(view.origin), forward) - F(view.near_plane));
+        const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(n, towards);
+        return hierarchy.nearest(from, -towards, active).distance + slack >= glm::length(position - from);
+    }
+};
+
+}  // namespace nephroid::stages

@@ -1,0 +1,72 @@
+// Hierarchical caustic maps, sections 3.1 and 3.2: the breadth-first walk down the pyramid, from 16 x 16 nodes to photons.
+// The geometry stage puts out a node's children, stream output collects them, and the next draw takes what was streamed.
+//
+// Known differences from the paper: a child is looked at before it is put out, not after, so no list holds nodes in vain; and
+// nodes whose photons converge leave by a second stream, which the paper's GPU did not have: it marked them in the one there was.
+#pragma once
+#include "stages/hierarchical_caustic_maps/converging_photons.hpp"
+#include "stages/hierarchical_caustic_maps/variant.hpp"
+
+namespace nephroid::stages::hierarchical {
+
+// A texel of a level of the pyramid; level 0 are the photons. 13 bits each of column and row, then the level.
+template <class F>
+struct Node {
+    LaneUint<F> packed;
+
+    static Node pack(LaneInt<F> x, LaneInt<F> y, int level) { return {as_uint(x | (y << 13)) | LaneUint<F>(static_cast<std::uint32_t>(level) << 26)}; }
+    LaneInt<F> x() const { return as_int(packed & LaneUint<F>(0x1fffu)); }
+    LaneInt<F> y() const { return as_int((packed >> 13) & LaneUint<F>(0x1fffu)); }
+    LaneInt<F> level() const { return as_int(packed >> 26); }
+};
+
+// The nodes that the walk starts from, without vertex data (section 4).
+struct RootNode {
+    int level;
+    template <class F>
+    Node<F> operator()(const VertexIds<F>& ids) const {
+        return Node<F>::pack(as_int(ids.vertex_id & LaneUint<F>(root_side - 1u)), as_int(ids.vertex_id >> root_bits), level);
+    }
+};
+struct SameNode {
+    template <class F>
+    Node<F> operator()(const Node<F>& node) const {
+        return node;
+    }
+};
+
+// One step down: the children that have photons.
+struct VisitChildren {
+    static constexpr auto input = Topology::PointList, output = Topology::PointList;
+    static constexpr int max_vertices = 4;
+    Texture2DView<Format::R32U> pyramid;
+    int level;       // of the nodes, at least 1
+    bool wide;       // photons of the wide map
+
+    template <class F>
+    void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>>& out) const {
+        const LaneInt<F> x = in[0].x(), y = in[0].y();
+        const LaneUint<F> bits = float_bits(pyramid.fetch<F>(x, y, level - 1).x) >> (wide ? wide_bits : 0);
+        for (int k = 0; k < 4; ++k) out.emit(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), level - 1), (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
+    }
+};
+
+// The same where photons are combined: a node whose photons converge goes to the second stream, and its children are left.
+struct VisitOrCombine {
+    static constexpr auto input = Topology::PointList, output = Topology::PointList;
+    static constexpr int max_vertices = 4;
+    VisitChildren visit;
+    Texture2DView<Format::RGBA32F> boxes;
+
+    template <class F>
+    void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
+        const LaneInt<F> x = in[0].x(), y = in[0].y();
+        const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
+        const LaneMask<F> converges = ((bits & LaneUint<F>(0xfu)) != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(x, y, visit.level - 1), {}}.converges();
+        for (int k = 0; k < 4; ++k)
+            out.template emit<0>(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1), ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !converges);
+        out.template emit<1>(in[0], converges);
+    }
+};
+
+}  // namespace nephroid::stages::hierarchical

@@ -127,6 +127,8 @@ struct Renderer::Impl : PassDraws {
 
     Impl(Device& d, const World& w, const Settings& s);
 
+    void measure_vertices();
+
     // ---- drawing
 
     bool exact() const { return settings.tracing == Tracing::Exact; }
@@ -184,6 +186,7 @@ struct Renderer::Impl : PassDraws {
     CubeViews cube_views(const glm::vec3& centre) const { return CubeViews(centre, reach * 1e-4f); }
     View caster_view(const Light& light, const Mesh& mesh) const;
     View lit_part(const Light& light, View of) const;
+    bool exceeds_view(const Light& light, const Mesh& mesh) const;
     View around(View v, float left, float right, float bottom, float top) const;
 
     // ---- passes
@@ -298,16 +301,25 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
             Buffer<mapping::VertexArea<float>> areas(specular(m) ? mesh.vertices.size() : 0, "vertex areas");
             if (specular(m) && mesh.vertices.size() > std::int64_t{settings.photons} * settings.photons)
                 faults.add("photons", "must be at least as many as the object's vertices", std::int64_t{settings.photons} * settings.photons, mesh.vertices.size());
-            for (std::int64_t t = 0; specular(m) && t < mesh.indices.size(); t += 3) {
-                const std::uint32_t* i = mesh.indices.data() + t;
-                const glm::vec3 a = mesh.vertices[i[0]].position, b = mesh.vertices[i[1]].position, c = mesh.vertices[i[2]].position;
-                for (int k = 0; k < 3; ++k) areas[i[k]].area += glm::cross(b - a, c - a) * (1.0f / 6.0f);
-            }
             vertex_areas.push_back(std::move(areas));
         }
+        measure_vertices();
     }
     if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
+}
+
+void Renderer::Impl::measure_vertices() {
+    for (std::size_t m = 0; m < vertex_areas.size(); ++m) {
+        const Mesh& mesh = world.meshes[m];
+        Buffer<mapping::VertexArea<float>>& areas = vertex_areas[m];
+        for (mapping::VertexArea<float>& a : areas.span()) a.area = glm::vec3(0.0f);
+        for (std::int64_t t = 0; areas.size() > 0 && t < mesh.indices.size(); t += 3) {
+            const std::uint32_t* i = mesh.indices.data() + t;
+            const glm::vec3 a = mesh.vertices[i[0]].position, b = mesh.vertices[i[1]].position, c = mesh.vertices[i[2]].position;
+            for (int k = 0; k < 3; ++k) areas[i[k]].area += glm::cross(b - a, c - a) * (1.0f / 6.0f);
+        }
+    }
 }
 
 // ---- views and sources
@@ -347,6 +359,18 @@ View Renderer::Impl::lit_part(const Light& light, View of) const {
     const float bottom = std::max(of.centre.y - of.half.y, -tangent), top = std::min(of.centre.y + of.half.y, tangent);
     const bool takes_all = right - left >= 2 * of.half.x && top - bottom >= 2 * of.half.y, takes_none = left >= right || bottom >= top;
     return takes_all || takes_none ? of : around(of, left, right, bottom, top);
+}
+
+// Whether caster_view cannot hold all of an object that the light reaches.
+bool Renderer::Impl::exceeds_view(const Light& light, const Mesh& mesh) const {
+    if (light.kind == LightKind::Directional || (light.kind == LightKind::Spot && 1 <= light.cos_outer * std::sqrt(1 + widest_caster_view * widest_caster_view))) return false;
+    const View v = caster_view(light, mesh);
+    for (int k = 0; k < 8; ++k) {
+        const glm::vec3 d = glm::vec3(k & 1 ? mesh.high.x : mesh.low.x, k & 2 ? mesh.high.y : mesh.low.y, k & 4 ? mesh.high.z : mesh.low.z) - v.origin;
+        // In the very middle of an object there is no view.
+        if (!(std::max(std::abs(glm::dot(d, v.right)), std::abs(glm::dot(d, v.up))) <= glm::dot(d, v.forward) * widest_caster_view)) return true;
+    }
+    return false;
 }
 
 ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
@@ -481,6 +505,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<Ta
     photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
     photons.light = LightSource(light);
     photons.view = lit_part(light, caster_view(light, world.meshes[pass.mesh]));
+    photons.all_round = exceeds_view(light, world.meshes[pass.mesh]);
     photons.side = settings.photons;
     photons.mesh = pass.mesh;
     photons.other_branch_followed = map.other_branch;
@@ -791,6 +816,12 @@ const Texture& Renderer::photon_positions(int map) const { return impl_->photon_
 const Texture& Renderer::photon_fluxes(int map) const { return impl_->photon_fluxes[static_cast<std::size_t>(map)]; }
 void Renderer::observe(Observer* observer) { impl_->observer = observer; }
 void Renderer::listen(ProgressListener* listener) { impl_->listener = listener; }
+
+void Renderer::vertices_moved() {
+    const FpEnvironment fp;
+    impl_->measure_vertices();
+    impl_->traced.refit(impl_->device.executor(), impl_->world);
+}
 
 Picture Renderer::picture() const {
     if (impl_->settings.samples_side > 1) return {&impl_->small_direct, &impl_->small_caustic, &impl_->small_emission};

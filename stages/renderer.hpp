@@ -48,8 +48,10 @@ public:
     const Faults& faults() const;
     const FramePlan& plan() const;
 
-    // Renders the world as it is now: lights and camera may have moved, meshes may not.
+    // Renders the world as it is now: lights and camera may have moved; vertices too, if that was said.
     [[nodiscard]] Faults render();
+    // Vertices have moved, as far as the world's bounds: their positions, normals, triangles' facts and meshes' bounds are new.
+    void vertices_moved();
 
     Picture picture() const;
     const std::vector<PassRecord>& records() const;  // one per pass of the plan

@@ -92,10 +92,16 @@ inline vec2<F> pack_unit(const vec3<F>& v) {
     const LaneMask<F> below = v.z < F(0.0f);
     return {select(below, folded_x, x), select(below, folded_y, y)};
 }
+// The point of the octahedron |x| + |y| + |z| = 1 that two numbers in -1..1 stand for. A square of area A there is seen from the
+// middle under the solid angle A / |point|^3.
+template <class F>
+inline vec3<F> octahedron_point(F x, F y) {
+    const F z = F(1.0f) - abs(x) - abs(y), fold = max(-z, F(0.0f));
+    return {x + select(x < F(0.0f), fold, -fold), y + select(y < F(0.0f), fold, -fold), z};
+}
 template <class F>
 inline vec3<F> unpack_unit(F x, F y) {
-    const F z = F(1.0f) - abs(x) - abs(y), fold = max(-z, F(0.0f));
-    return glm::normalize(vec3<F>(x + select(x < F(0.0f), fold, -fold), y + select(y < F(0.0f), fold, -fold), z));
+    return glm::normalize(octahedron_point(x, y));
 }
 
 // Specular surfaces: the shading normal and the triangle's, both as the mesh has them, packed. Only what lies behind a

@@ -39,11 +39,11 @@ std::vector<std::string> failure_notes(const stages::World& world, const stages:
         casters = true;
         mirrors = mirrors || kind == SurfaceKind::Mirror;
         for (const stages::Light& light : world.lights)
-            if (!fits_one_picture(light, mesh))
+            if (settings.tracing == stages::Tracing::ImageSpace && !fits_one_picture(light, mesh))
                 notes.push_back("light '" + light.name + "' stands in or close to '" + mesh.name + "', too close to see all of it in one picture: what it does not see has no caustic");
     }
     if (!casters || world.lights.empty()) return notes;
-    if (mirrors && settings.intersection != stages::Intersection::Bisection)
+    if (mirrors && settings.tracing == stages::Tracing::ImageSpace && settings.intersection != stages::Intersection::Bisection)
         notes.push_back("Newton's and the secant intersection diverge for light that mirrors turn back, and lose it: bisection does not");
     const float spacing = static_cast<float>(settings.map_size) / static_cast<float>(settings.photons);
     constexpr float reach = stages::mapping::PlacePhoton::widest / stages::mapping::PlacePhoton::overlap;

@@ -70,8 +70,8 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--variant", variant,
                  "mapping: two-sided refraction (default); the tutorial's single one; photons from the object's vertices. hierarchical: " + joined(names_of(stages::hierarchical::named_variants)) + " (default)")
         ->check(CLI::IsMember(all_variants()));
-    c.add_option("--tracing", tracing, "How light is followed: through pictures from the light; through the triangles, any objects one after the other")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
-    c.add_option("--intersection", intersection, "How a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
+    c.add_option("--tracing", tracing, "How light is followed: through pictures from the light, one object; through the triangles, any objects one after the other")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
+    c.add_option("--intersection", intersection, "Image space: how a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
     c.add_option("--map-size", settings.map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
@@ -80,9 +80,9 @@ void RenderOptions::add_to(CLI::App& c) {
         ->check(CLI::IsMember({"max-distance", "area"}))->capture_default_str();
     c.add_flag("--discard-wide-splats", settings.discard_wide_splats, "varying, varying-single: leave out what is too wide for the map's coarsest level");
     c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing, or the variant, asks for")->check(number_in(0, 64))->capture_default_str();
-    c.add_option("--bounces", settings.bounces, "Surfaces that light meets in an object, at most")->check(CLI::Range(1, 64))->capture_default_str();
+    c.add_option("--bounces", settings.bounces, "Specular surfaces that light meets, at most")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_flag("--inner-reflections,!--no-inner-reflections", settings.inner_reflections, "Follow what surfaces reflect in part inside objects (default), or leave it out");
-    c.add_option("--depth-layers", settings.solid_layers, "Times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
+    c.add_option("--depth-layers", settings.solid_layers, "Image space: times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
     c.add_option("--samples", samples, "Per pixel, rounded up to a square; a pixel is their mean")->check(CLI::Range(1, 256))->capture_default_str();
     c.add_option("--threads", threads, "0: one per core")->check(CLI::Range(0, 1024))->capture_default_str();
     c.add_option("--lanes", lanes, "1, 4, 8 or 16; 0: the widest there is")->check(CLI::IsMember({0, 1, 4, 8, 16}))->capture_default_str();

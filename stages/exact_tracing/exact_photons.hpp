@@ -1,11 +1,12 @@
 // Photons of a caustic map, traced exactly: as mapping/photon_pass.hpp, every pixel of the light's view of an object is one,
 // but nothing is drawn beforehand. The ray through a pixel's middle belongs to the object if that is what it meets first.
+// Where the object is all round the light, or goes beyond what one view holds, pixels are those of an octahedron.
 //
 // Caustic maps look from the light. What lands where that does not see has a map round the object's middle.
 #pragma once
 #include "stages/exact_tracing/exact_tracer.hpp"
 #include "stages/light_source.hpp"
-#include "stages/view.hpp"
+#include "stages/surfaces.hpp"
 
 namespace nephroid::stages {
 
@@ -13,6 +14,7 @@ struct TraceExactPhotons {
     ExactTracer tracer;
     LightSource light;
     View view;       // of the object from the light; what the light reaches of it
+    bool all_round = false;  // instead of the view: all directions
     int side = 1;    // photons along an edge
     int mesh = 0;    // the object
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
@@ -24,9 +26,10 @@ struct TraceExactPhotons {
     template <class F>
     std::array<vec4<F>, 5> operator()(const PixelInput<F>& pixel) const {
         const F u = pixel.position.x * F(1.0f / static_cast<float>(side)), v = pixel.position.y * F(1.0f / static_cast<float>(side));
+        const vec3<F> corner = octahedron_point(u * F(2.0f) - F(1.0f), v * F(2.0f) - F(1.0f));
         ExactTracer::Ray<F> ray;
         ray.position = view.perspective ? broadcast<F>(view.origin) : view.position(u, v, F(1.0f));
-        ray.direction = glm::normalize(view.ray(u, v));
+        ray.direction = glm::normalize(all_round ? corner : view.ray(u, v));
         ray.active = LaneMask<F>(true);
         ray.index = as_uint(to_int_in_range(pixel.position.y) * side + to_int_in_range(pixel.position.x));
         ray.by_chance = LaneMask<F>(tracer.chance_from_start);
@@ -51,7 +54,8 @@ struct TraceExactPhotons {
         const F window = light.window(ray.length);
         ray.ledger.scale(ray.landed, vec3<F>(window), ray.ledger.missed);
 
-        const vec3<F> emitted = light.emission(start) * view.texel_measure(u, v, side, side);
+        const F distance = glm::length(corner), solid_angle = F(4.0f / (static_cast<float>(side) * static_cast<float>(side))) / (distance * distance * distance);
+        const vec3<F> emitted = light.emission(start) * (all_round ? solid_angle : view.texel_measure(u, v, side, side));
         const vec3<F> flux = select(ray.landed, emitted * ray.ledger.carried, vec3<F>(F(0.0f)));
         const auto total = [&](const vec3<F>& share) { return select(lit, emitted.x * share.x + emitted.y * share.y + emitted.z * share.z, F(0.0f)); };
         return {vec4<F>(ray.position, select(shown, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),

@@ -19,11 +19,11 @@
 
 namespace nephroid::stages {
 
-// Two boxes and what is in them.
+// Two boxes and what is in them, in one line of the cache.
 struct HierarchyNode {
     float bounds[2][6];     // low x, y, z, high x, y, z
     std::int32_t child[2];  // a node, or ~(8 times the first triangle plus their number less 1)
-    std::int32_t unused[2];
+    std::int32_t padding[2];
 };
 struct HierarchyTriangle {
     float corner[3][3];

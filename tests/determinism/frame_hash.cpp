@@ -2,8 +2,8 @@
 //
 //   frame_hash [--threads N] [--lanes N] [--fp-mode usual|hostile] [--only NAME,NAME...]
 //
-// Prints the version of the bits, then a name and a hash a line: pictures of the bundled scenes, and draws of all kinds
-// straight on the pipeline. With --fp-mode hostile the calling thread rounds upwards and flushes denormals while it calls.
+// Prints the version of the bits, then a name and a hash a line: pictures of the bundled scenes, those traced exactly as
+// SCENE/exact, those of hierarchical caustic maps as SCENE/VARIANT, and draws of all kinds straight on the pipeline. With --fp-mode hostile the calling thread rounds upwards and flushes denormals while it calls.
 // Needs neither picture files nor threads, so that it runs on a board and under an emulator.
 // Exit status: 0; 2 for bad usage or a fault; 77 if this build or processor does not have so many lanes.
 #define DOCTEST_CONFIG_IMPLEMENT
@@ -94,6 +94,12 @@ int hash_all(const Options& o) {
         const std::string name(scene);
         if (!wanted(o, name)) continue;
         print(name, test::hash_of_scene(device, scene, around));
+        ++count;
+    }
+    for (const std::string_view scene : nephroid::scenes::bundled_scene_names()) {
+        const std::string name = std::string(scene) + "/exact";
+        if (!wanted(o, name)) continue;
+        print(name, test::hash_of_scene(device, scene, nephroid::stages::Tracing::Exact, around));
         ++count;
     }
     // SCENE/VARIANT: of hierarchical caustic maps, the default for every scene, the others for a lamp and for the sun.

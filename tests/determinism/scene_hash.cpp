@@ -46,9 +46,12 @@ std::string hash_of(Device& device, std::string_view name, const stages::Setting
 
 }  // namespace
 
-std::string hash_of_scene(Device& device, std::string_view name, const Around& around) {
+std::string hash_of_scene(Device& device, std::string_view name, const Around& around) { return hash_of_scene(device, name, stages::Tracing::ImageSpace, around); }
+
+std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing tracing, const Around& around) {
     stages::Settings settings;
     settings.photons = settings.map_size = 64;
+    settings.tracing = tracing;
     return hash_of(device, name, settings, around);
 }
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "pipeline/device.hpp"
-#include "stages/hierarchical_caustic_maps/variant.hpp"
+#include "stages/settings.hpp"
 
 namespace test {
 
@@ -16,7 +16,10 @@ using Around = std::function<void(const std::function<void()>&)>;
 // calls are made through `around`. Throws std::runtime_error where something does not work out.
 std::string hash_of_scene(nephroid::Device& device, std::string_view scene, const Around& around);
 
-// The same with --technique hierarchical and --variant, --photons 128^2, and --map-size 256, or 64 where photons are combined:
+// The same with --tracing.
+std::string hash_of_scene(nephroid::Device& device, std::string_view scene, nephroid::stages::Tracing tracing, const Around& around);
+
+// The first with --technique hierarchical and --variant, --photons 128^2, and --map-size 256, or 64 where photons are combined:
 // splats of all levels, and nodes of several.
 std::string hash_of_scene(nephroid::Device& device, std::string_view scene, nephroid::stages::hierarchical::Variant variant, const Around& around);
 

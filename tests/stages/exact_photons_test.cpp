@@ -202,6 +202,27 @@ TEST_CASE("light from inside a volume is absorbed on its way out") {
     CHECK(audit.imbalance() < 1e-4);
 }
 
+TEST_CASE("a light inside an object, or touching it, sends photons all round") {
+    Device device;
+    for (const float height : {1.0f, 1.2f, 1.505f}) {
+        CAPTURE(height);
+        scenes::Scene scene = empty_scene();
+        scene.meshes.push_back(scenes::make_room("room", add_lambert(scene, glm::vec3(0.5f)), {-2, -1, -2}, {2, 3, 2}));
+        scene.meshes.push_back(scenes::make_sphere("ball", add_glass(scene, 1.5f), {0, 1, 0}, 0.5f, 5));
+        add_camera_above(scene, 2.9f, 0.9f);
+        add_point_light(scene, {0, height, 0}, glm::vec3(1));
+        stages::Settings settings = exact(32, 24, 512);
+        settings.bounces = 64;
+        const stages::EnergyAudit audit = render(device, scene, settings).renderer->audit();
+        // Outside it, what the ball fills of all directions.
+        const double outside = height - 1.0, filled = outside < 0.5 ? 1.0 : 0.5 * (1 - std::sqrt(1 - 0.25 / (outside * outside)));
+        CHECK(audit.emitted == doctest::Approx(3 * 4 * std::acos(-1.0) * filled).epsilon(0.01).scale(0));
+        // Beyond the centre by more than the critical angle allows, some of the light never gets out.
+        CHECK((audit.deposited + audit.beside + audit.trapped) / audit.emitted == doctest::Approx(1.0).epsilon(3e-3).scale(0));
+        CHECK(audit.imbalance() < 1e-4);
+    }
+}
+
 TEST_CASE("receivers stop light from behind, and are lit there only if they are seen there") {
     Device device;
     for (const bool two_sided : {false, true}) {

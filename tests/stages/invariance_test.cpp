@@ -116,6 +116,38 @@ TEST_CASE("the picture does not depend on threads, lanes, observers or what was 
     }
 }
 
+TEST_CASE("where vertices have moved, the picture is that of a renderer made for it") {
+    scenes::Scene scene = scenes::bundled_scene("sphere-above-water"), moved = scene;
+    // Within the bounds of what does not move.
+    for (scenes::Mesh& m : moved.meshes)
+        for (glm::vec3& p : m.positions)
+            if (m.name == "sphere") p += glm::vec3(0.1f, 0, -0.05f) + 0.1f * glm::vec3(p.y, 0, p.x);
+    for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+        CAPTURE(static_cast<int>(tracing));
+        Device device({.threads = 3});
+        stages::Settings settings = small(64, 48, 128, 128);
+        settings.tracing = tracing;
+        const Rendered expected = render(device, moved, settings);
+        Rendered before = render(device, scene, settings);
+        REQUIRE(before.built.world.low == expected.built.world.low);
+        REQUIRE(before.built.world.high == expected.built.world.high);
+        CHECK(before.caustic != expected.caustic);
+        for (std::size_t m = 0; m < expected.built.world.meshes.size(); ++m) {
+            stages::Mesh& mesh = before.built.world.meshes[m];
+            const stages::Mesh& to = expected.built.world.meshes[m];
+            std::copy(to.vertices.data(), to.vertices.data() + to.vertices.size(), mesh.vertices.data());
+            std::copy(to.triangles.data(), to.triangles.data() + to.triangles.size(), mesh.triangles.data());
+            mesh.low = to.low;
+            mesh.high = to.high;
+        }
+        before.renderer->vertices_moved();
+        REQUIRE(before.renderer->render().empty());
+        std::vector<float> caustic(before.caustic.size());
+        before.renderer->picture().caustic->download(caustic.data());
+        CHECK(caustic == expected.caustic);
+    }
+}
+
 TEST_CASE("variants agree on how much light there is") {
     Device device;
     const scenes::Scene scene = scenes::bundled_scene("glass-sphere");

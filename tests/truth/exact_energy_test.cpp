@@ -1,6 +1,7 @@
 // Where light goes that is traced exactly, against the reference tracer's accounts.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -41,7 +42,73 @@ void compare_accounts(Device& device, scenes::Scene scene) {
     CHECK(audit.imbalance() < 1e-4);
 }
 
+// A camera at `eye` that looks at `target`.
+void look(scenes::Scene& scene, const glm::vec3& eye, const glm::vec3& target, float vertical_fov) {
+    const glm::vec3 back = glm::normalize(eye - target), up = std::abs(back.y) > 0.99f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0), right = glm::normalize(glm::cross(up, back));
+    scene.cameras[0].world_from_camera = glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0), glm::vec4(eye, 1));
+    scene.cameras[0].vertical_fov = vertical_fov;
+}
+
+void compare_caustic_layers(Device& device, scenes::Scene scene) {
+    scene.media.clear();
+    reference::Options options;
+    options.width = 96;
+    options.height = 72;
+    reference::Tracer tracer(scene, options);
+    tracer.run({.photons = 1u << 22});
+    const PictureData truth = tracer.picture(), error = tracer.error();
+    stages::Settings settings = small(options.width, options.height, 1024, 1024, 4);
+    settings.tracing = stages::Tracing::Exact;
+    settings.bounces = 32;
+    const Rendered r = render(device, scene, settings);
+    const auto sum_of = [](const PictureData& picture, const std::string& suffix, const PictureData& masked, bool squared) {
+        double sum = 0;
+        for (std::size_t pixel = 0; pixel < picture.values.size() / picture.channels.size(); ++pixel) {
+            if (masked.values[pixel * masked.channels.size() + static_cast<std::size_t>(masked.channel("mask"))] > 0) continue;
+            for (const char* c : {"caustic.R", "caustic.G", "caustic.B"}) {
+                const double v = static_cast<double>(picture.values[pixel * picture.channels.size() + static_cast<std::size_t>(picture.channel(c + suffix))]);
+                sum += squared ? v * v : v;
+            }
+        }
+        return sum;
+    };
+    double ours = 0;
+    for (int y = 0; y < options.height; ++y)
+        for (int x = 0; x < options.width; ++x)
+            if (!(truth.values[(static_cast<std::size_t>(y) * 96 + static_cast<std::size_t>(x)) * truth.channels.size() + static_cast<std::size_t>(truth.channel("mask"))] > 0)) ours += r.at(r.caustic, x, y).x + r.at(r.caustic, x, y).y + r.at(r.caustic, x, y).z;
+    const double expected = sum_of(truth, "", truth, false), spread = std::sqrt(sum_of(error, ".error", truth, true)) / expected;
+    MESSAGE(scene.name, ": caustic layer ", ours / expected, " of the truth's, +- ", spread);
+    REQUIRE(spread < 0.004);
+    CHECK(ours == doctest::Approx(expected).epsilon(0.01).scale(0));
+}
+
 }  // namespace
+
+TEST_CASE("the caustic layer has the truth's energy where receivers are seen with nothing before them") {
+    Device device;
+    const struct {
+        const char* name;
+        glm::vec3 eye, target;
+        float fov;
+    } views[] = {{"glass-sphere", {1.0f, 1.5f, 0.5f}, {0.5f, 0, 0}, 0.6f},
+                 {"glass-torus", {0.95f, 0.3f, -0.35f}, {0.95f, 0, -0.35f}, 1.4f},
+                 {"mirror-ring", {0, 2.0f, 0}, {0, 0, 0}, 0.5f},
+                 {"pool", {0, -0.1f, 0}, {0, -1, 0}, 2.2f},
+                 {"sphere-above-water", {0, -0.1f, 0}, {0, -1, 0}, 2.2f}};
+    for (const auto& view : views) {
+        scenes::Scene scene = scenes::bundled_scene(view.name);
+        look(scene, view.eye, view.target, view.fov);
+        compare_caustic_layers(device, scene);
+    }
+    const std::string room = std::string(NEPHROID_ASSETS) + "/models/bunny_room.glb";
+    if (!std::filesystem::exists(room)) {
+        MESSAGE("SKIPPED: there is no ", room);
+        return;
+    }
+    scenes::Scene scene = scenes::load_gltf(room);
+    look(scene, {-0.5f, 1.6f, -1.0f}, {-0.5f, 1.6f, -2.0f}, 1.9f);
+    compare_caustic_layers(device, scene);
+}
 
 TEST_CASE("as much light lands on receivers as in the reference tracer, through whatever objects it has gone") {
     Device device;

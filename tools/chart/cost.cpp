@@ -9,7 +9,7 @@ namespace nephroid::chart {
 
 namespace {
 
-constexpr const char* work_names[works] = {"cube maps", "views", "photons", "splats", "map texels", "seen through", "shading"};
+constexpr const char* work_names[works] = {"cube maps", "views", "photons", "exact photons", "splats", "map texels", "seen through", "shading"};
 constexpr const char* count_names[counts] = {"texel", "vertex", "primitive", "fragment", "blended fragment", "photon that landed", "step"};
 
 // ns, [Work][Count].
@@ -17,17 +17,20 @@ constexpr double weights_ns[works][counts] = {
     {0.86, 0, 54, 10, 0, 0, 0},      // cube maps; off by 37 %
     {0, 18, 8, 32, 0, 0, 0},         // views; off by 17 %
     {31, 0, 0, 0, 0, 330, 20},       // photons; off by 30 %
+    {31, 0, 0, 0, 0, 330, 0},        // exact photons
     {8.5, 4.6, 45, 3.5, 0, 0, 0},    // splats; off by 17 %
     {0, 0, 0, 15, 0, 0, 0},          // map texels; off by 29 %
     {23, 0, 0, 0, 270, 0, 0},        // seen through; off by 33 %
     {3.5, 0, 0, 0, 10, 0, 0},        // shading; off by 18 %
 };
 
-Work work_of(stages::PassKind kind) {
+Work photons_of(const stages::Settings& settings) { return settings.tracing == stages::Tracing::Exact ? Work::ExactPhotons : Work::Photons; }
+
+Work work_of(stages::PassKind kind, const stages::Settings& settings) {
     using enum stages::PassKind;
     switch (kind) {
         case Photons:
-        case FitCausticView: return Work::Photons;
+        case FitCausticView: return photons_of(settings);
         case SplatPhotons:
         case TraversePhotons: return Work::Splats;
         case ValidityPyramid:
@@ -120,7 +123,7 @@ Amounts amounts_of(const std::vector<RenderedPass>& passes, const stages::Settin
     const auto add = [&](Work work, Count count, double amount) { amounts[static_cast<std::size_t>(work)][static_cast<std::size_t>(count)] += amount; };
     for (const RenderedPass& pass : passes) {
         const PipelineStatistics& s = pass.record.statistics;
-        const Work work = work_of(pass.kind);
+        const Work work = work_of(pass.kind, settings);
         add(work, Count::Texels, texels_of(pass, settings));
         add(work, Count::Vertices, static_cast<double>(s.vs_invocations));
         add(work, Count::Primitives, static_cast<double>(s.c_primitives));
@@ -128,8 +131,8 @@ Amounts amounts_of(const std::vector<RenderedPass>& passes, const stages::Settin
         add(work, Count::BlendedFragments, static_cast<double>(s.blended_fragments));
         // The photons that a shader followed are those that are splatted.
         if (work != Work::Splats) continue;
-        if (settings.variant != stages::mapping::Variant::Tutorial) add(Work::Photons, Count::Followed, static_cast<double>(s.c_primitives));
-        add(Work::Photons, Count::Steps, static_cast<double>(s.c_primitives) * settings.iterations);
+        if (settings.variant != stages::mapping::Variant::Tutorial) add(photons_of(settings), Count::Followed, static_cast<double>(s.c_primitives));
+        if (settings.tracing == stages::Tracing::ImageSpace) add(Work::Photons, Count::Steps, static_cast<double>(s.c_primitives) * settings.iterations);
     }
     return amounts;
 }
@@ -154,7 +157,7 @@ std::string weights_text() {
 
 void CostFit::add(const std::vector<RenderedPass>& passes, const stages::Settings& settings) {
     Frame frame{amounts_of(passes, settings), {}};
-    for (const RenderedPass& pass : passes) frame.milliseconds[static_cast<std::size_t>(work_of(pass.kind))] += pass.record.milliseconds;
+    for (const RenderedPass& pass : passes) frame.milliseconds[static_cast<std::size_t>(work_of(pass.kind, settings))] += pass.record.milliseconds;
     frames_.push_back(frame);
 }
 

@@ -13,8 +13,8 @@ namespace nephroid::chart {
 
 // Passes that do work of one kind: an invocation of a shader that follows a photon through glass is dearer than one that adds
 // a picture to another.
-enum class Work { CubeGeometry, ViewGeometry, Photons, Splats, MapTexels, SeenThrough, Shading };
-inline constexpr int works = 7;
+enum class Work { CubeGeometry, ViewGeometry, Photons, ExactPhotons, Splats, MapTexels, SeenThrough, Shading };
+inline constexpr int works = 8;
 
 // What is counted of a kind of work.
 enum class Count {

@@ -69,6 +69,7 @@ private:
             dielectric = dielectric || world_.material_of(mesh).kind == SurfaceKind::Dielectric;
         }
         if (dielectric) add({.kind = PassKind::TraceSeen, .name = "through specular objects", .why = "glass is looked through", .reads = {"triangles", "points", "eye depth"}, .writes = {"refracted points", "emission"}});
+        if (dielectric && settings_.inner_reflections) add({.kind = PassKind::TraceSeen, .name = "reflected inside specular objects", .why = "glass reflects inside", .reads = {"triangles", "points", "eye depth"}, .writes = {"points reflected inside", "emission"}, .branch = Branch::ReflectedInside});
         if (!seen.empty()) add({.kind = PassKind::TraceSeen, .name = "reflected in specular objects", .why = "smooth surfaces reflect", .reads = {"triangles", "points", "eye depth"}, .writes = {"reflected points", "emission"}, .branch = Branch::Reflected});
     }
 

@@ -42,7 +42,7 @@ struct PointPictures {
     Texture positions, normals, albedo;
     SurfacePoints view() const { return {positions, normals, albedo}; }
 };
-enum PointSource { first, refracted, reflected, point_sources };
+enum PointSource { first, refracted, reflected, reflected_inside, point_sources };
 
 // A specular object as a view sees it.
 struct LayerPictures {
@@ -235,7 +235,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     // Lights may stand outside the bounds of what they light.
     for (const Light& l : world.lights)
         if (l.kind != LightKind::Directional) reach = std::max(reach, glm::length(l.position - scene_centre()) + glm::length(world.high - world.low));
-    for (int k = 0; k < (any_specular ? point_sources : 1); ++k) {
+    for (int k = 0; k < (any_specular ? exact() ? point_sources : reflected_inside : 1); ++k) {
         points[k].positions = target(Format::RGBA32F, width, height, "positions");
         points[k].normals = target(Format::RGBA32F, width, height, "normals");
         points[k].albedo = target(Format::RGBA32F, width, height, "albedo");
@@ -693,6 +693,8 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     trace.tracer.bounces = settings.bounces;
     trace.tracer.branch = pass.branch;
     trace.tracer.light = false;
+    if (settings.inner_reflections) trace.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
+    trace.tracer.seed = ~static_cast<std::uint64_t>(pass.branch);
     trace.eye = eye();
     trace.width = width, trace.height = height;
     trace.first = points[first].positions;
@@ -703,7 +705,7 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
 }
 
 void Renderer::Impl::store_seen(const Pass& pass, const auto& shader) {
-    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : refracted];
+    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : pass.branch == Branch::ReflectedInside ? reflected_inside : refracted];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
     draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});

@@ -78,15 +78,17 @@ enum class Sides {
     Outer,  // of closed meshes
 };
 
-double sum_channel(Executor& executor, const Texture& texture, int channel, std::vector<double>& rows) {
+// Of all texels, each channel, row by row.
+glm::dvec4 sum_of(Executor& executor, const Texture& texture, std::vector<glm::dvec4>& rows) {
     executor.for_each(texture.height(), [&](int y, int) {
         const float* texel = reinterpret_cast<const float*>(texture.row(y));
-        double sum = 0;
-        for (int x = 0; x < texture.width(); ++x) sum += texel[4 * x + channel];
-        rows[y] = sum;
+        double sum[4] = {};
+        for (int x = 0; x < texture.width(); ++x, texel += 4)
+            for (int c = 0; c < 4; ++c) sum[c] += texel[c];
+        rows[static_cast<std::size_t>(y)] = {sum[0], sum[1], sum[2], sum[3]};
     });
-    double sum = 0;
-    for (int y = 0; y < texture.height(); ++y) sum += rows[y];
+    glm::dvec4 sum(0.0);
+    for (int y = 0; y < texture.height(); ++y) sum += rows[static_cast<std::size_t>(y)];
     return sum;
 }
 
@@ -123,7 +125,7 @@ struct Renderer::Impl : PassDraws {
     std::vector<Buffer<mapping::VertexArea<float>>> vertex_areas;  // per mesh; variant Vertices
     hierarchical::PhotonGather gather;
     CausticViewFitter fitter;
-    std::vector<double> row_sums;
+    std::vector<glm::dvec4> row_sums;
 
     Impl(Device& d, const World& w, const Settings& s);
 
@@ -523,12 +525,9 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
     else trace_photons(pass, targets);
     if (!settings.audit) return;
     Executor& executor = device.executor();
-    audit.emitted += sum_channel(executor, accounts, 0, row_sums);
-    audit.absorbed += sum_channel(executor, accounts, 1, row_sums);
-    audit.not_followed += sum_channel(executor, accounts, 2, row_sums);
-    audit.correction += sum_channel(executor, accounts, 3, row_sums);
-    audit.trapped += sum_channel(executor, losses, 0, row_sums);
-    audit.missed += sum_channel(executor, losses, 1, row_sums);
+    const glm::dvec4 kept = sum_of(executor, accounts, row_sums), lost = sum_of(executor, losses, row_sums);
+    audit.emitted += kept.x, audit.absorbed += kept.y, audit.not_followed += kept.z, audit.correction += kept.w;
+    audit.trapped += lost.x, audit.missed += lost.y;
 }
 
 void Renderer::Impl::store_receiver_sides(const View& view, const TargetView& sides, const TargetView& depth) {
@@ -592,7 +591,7 @@ void Renderer::Impl::splat_hierarchical(const Pass& pass, bool wide) {
     gather.splat(*this, place, photon_fluxes[pass.map], size, flux_target(world.lights[pass.light], wide));
     if (!settings.audit || !size.discards_wide) return;
     gather.count_discarded(*this, place, photon_fluxes[pass.map], size, accounts);
-    audit.discarded += sum_channel(device.executor(), accounts, 0, row_sums);
+    audit.discarded += sum_of(device.executor(), accounts, row_sums).x;
 }
 
 void Renderer::Impl::resolve_layer(const Texture& flux, int levels, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
@@ -606,8 +605,8 @@ void Renderer::Impl::resolve_layer(const Texture& flux, int levels, const Textur
         draw_screen("resolve caustic map", ResolveIrradiance{flux, receivers}, targets);
     }
     if (!settings.audit) return;
-    audit.deposited += sum_channel(device.executor(), sums, 0, row_sums);
-    audit.beside += sum_channel(device.executor(), sums, 1, row_sums);
+    const glm::dvec4 sum = sum_of(device.executor(), sums, row_sums);
+    audit.deposited += sum.x, audit.beside += sum.y;
 }
 
 void Renderer::Impl::resolve(const Pass& pass) {
@@ -623,7 +622,7 @@ void Renderer::Impl::resolve(const Pass& pass) {
 
 // Little light, and mostly none: sprites do for every technique.
 void Renderer::Impl::hidden_caustic(const Pass& pass) {
-    has_hidden = !TracedWorld::lies_open(world, world.lights[pass.light]) && sum_channel(device.executor(), hidden_positions, 3, row_sums) > 0;
+    has_hidden = !TracedWorld::lies_open(world, world.lights[pass.light]) && sum_of(device.executor(), hidden_positions, row_sums).w > 0;
     if (!has_hidden) return;
     const Mesh& mesh = world.meshes[pass.mesh];
     const int size = settings.map_size / 2;

@@ -1,4 +1,6 @@
 // nephroid tables: Tables 3, 4 and 5 of Wyman, Hierarchical Caustic Maps, for our scenes, beside the paper's figures.
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -57,6 +59,11 @@ std::string paper_figure(const double figures[5], int photons) {
     return k >= 0 && figures[k] > 0 ? text : "-";
 }
 
+double cpu_ms() {
+    rusage r{};
+    getrusage(RUSAGE_SELF, &r);
+    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) * 1e3 + static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec) * 1e-3;
+}
 double now_ms() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 stages::Settings settings_of(const TablesArguments& a, const scenes::Scene& scene, int photons, Variant variant) {
@@ -73,7 +80,7 @@ stages::Settings settings_of(const TablesArguments& a, const scenes::Scene& scen
 
 // One way from photons to a map's flux.
 struct Gathered {
-    double ms = 1e30;  // the fastest run
+    double ms = 1e30, cpu_ms = 1e30;  // the fastest run's, and the least processor time
     double visited = 0, splats = 0, texels = 0;  // texels: splatted
     PipelineStatistics statistics;  // of all
 };
@@ -95,7 +102,7 @@ Gathered gather(Device& device, const stages::Renderer& renderer, const stages::
     Gathered g;
     for (int run = 0; run < runs; ++run) {
         stages::PassDraws draws(device);
-        const double start = now_ms();
+        const double start = now_ms(), cpu_start = cpu_ms();
         if (hierarchical::has_pyramid(s.hierarchical_variant, s.photons)) photons.build_pyramid(draws, placement, renderer.photon_fluxes(0));
         const std::uint64_t before = draws.statistics.so_primitives_written[0];
         if (hierarchical::traverses(s.hierarchical_variant)) photons.traverse(draws, false);
@@ -107,6 +114,7 @@ Gathered gather(Device& device, const stages::Renderer& renderer, const stages::
         g.texels = static_cast<double>(draws.statistics.samples_passed - listed.samples_passed);
         if (levels > 1) hierarchical::PhotonGather::sum_levels(draws, flux, 0, levels);
         g.ms = std::min(g.ms, now_ms() - start);
+        g.cpu_ms = std::min(g.cpu_ms, cpu_ms() - cpu_start);
         throw_faults(draws.frame_faults);
         g.statistics = draws.statistics;
     }
@@ -117,8 +125,8 @@ void table_3(const TablesArguments& a, Device& device) {
     const scenes::Scene scene = load_scene(a.scene);
     BuiltWorld built = build_world(device, scene);
     std::printf("## Table 3: from photons to a map of %d^2 texels, %s\n\n", a.map_size, scene.name.c_str());
-    std::printf("Of the first light's refracted or mirrored photons. Texels: those that splats cover. MB: written, or read to be added to. ms: the fastest of %d.\n\n", a.runs);
-    std::printf("| photons | valid | variant | visited | splats | texels | MB | ms | paper, ms |\n|---:|---:|---|---:|---:|---:|---:|---:|---:|\n");
+    std::printf("Of the first light's refracted or mirrored photons. Texels: those that splats cover. MB: written, or read to be added to. ms: the fastest of %d runs; processor ms: all threads together.\n\n", a.runs);
+    std::printf("| photons | valid | variant | visited | splats | texels | MB | ms | processor ms | paper, ms |\n|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|\n");
     for (const int photons : a.photons) {
         stages::Settings s = settings_of(a, scene, photons, Variant::Hierarchical);
         s.map_size = 64;
@@ -134,14 +142,14 @@ void table_3(const TablesArguments& a, Device& device) {
         const stages::World& world = built.world;
         stages::CausticViewFitter fitter;
         const stages::CausticViewFitter::Fit fit = fitter.fit(device.executor(), renderer.photon_positions(0), renderer.photon_fluxes(0), world.lights[0], (world.low + world.high) * 0.5f, glm::length(world.high - world.low));
-        std::printf("| %d^2 | | photon buffer | | | | | %.1f | %s |\n", photons, buffer_ms, paper_figure(paper_buffer_ms, photons).c_str());
+        std::printf("| %d^2 | | photon buffer | | | | | %.1f | | %s |\n", photons, buffer_ms, paper_figure(paper_buffer_ms, photons).c_str());
         double valid = 0;
         for (const Column& c : columns) {
             const Gathered g = gather(device, renderer, fit, settings_of(a, scene, photons, c.variant), a.runs);
             if (c.variant == Variant::Gather) valid = g.splats;
             constexpr double texel_bytes = 16;
-            std::printf("| | %.0f | %s | %.0f | %.0f | %.0f | %.1f | %.1f | %s |\n", valid, c.name, g.visited, g.splats, g.texels,
-                        (static_cast<double>(g.statistics.bytes_written) + texel_bytes * static_cast<double>(g.statistics.blended_fragments)) * 1e-6, g.ms, paper_figure(c.paper_ms, photons).c_str());
+            std::printf("| | %.0f | %s | %.0f | %.0f | %.0f | %.1f | %.1f | %.1f | %s |\n", valid, c.name, g.visited, g.splats, g.texels,
+                        (static_cast<double>(g.statistics.bytes_written) + texel_bytes * static_cast<double>(g.statistics.blended_fragments)) * 1e-6, g.ms, g.cpu_ms, paper_figure(c.paper_ms, photons).c_str());
             std::fflush(stdout);
         }
     }

@@ -638,12 +638,18 @@ void Renderer::Impl::hidden_caustic(const Pass& pass) {
 
 void Renderer::Impl::surface_points() {
     const View view = eye();
+    const glm::vec3 attenuation = exact() ? traced.attenuation_at(view.origin) : glm::vec3(0.0f);
     clear(eye_depth.mip());
     for (PointPictures& p : points)
         if (!p.positions.empty()) clear(p.positions.mip());
     for (const Texture* t : {&direct, &caustic, &emission}) clear(t->mip());
     draw_meshes(state("surface points", CullMode::None, depth_greater), Sides::Seen, view, {points[first].positions.mip(), points[first].normals.mip(), points[first].albedo.mip()}, eye_depth.mip(),
-                [&](int m) { return !specular(m); }, [&](int m) { return store_receiver(m, view, width, height); });
+                [&](int m) { return !specular(m); },
+                [&](int m) {
+                    StoreReceiver store = store_receiver(m, view, width, height);
+                    store.attenuation = attenuation;
+                    return store;
+                });
 }
 
 void Renderer::Impl::hide_behind() {

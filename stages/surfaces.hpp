@@ -65,6 +65,7 @@ struct StoreReceiver {
     int mesh;
     glm::vec3 base_color;
     float pixel_measure;  // of the target's pixels at unit distance (perspective) or in m^2, for choosing a mip level
+    glm::vec3 attenuation{0.0f};  // of what the view stands in, 1/m
 
     template <class F>
     std::array<vec4<F>, 3> operator()(const SurfaceVertex<F>& in, const PixelInput<F>& pixel) const {
@@ -79,6 +80,10 @@ struct StoreReceiver {
             const F texels = t.texels_per_square_metre * area;
             constexpr Sampler sampler{.filter = Filter::Trilinear, .address_u = AddressMode::Wrap, .address_v = AddressMode::Wrap};
             albedo = albedo * vec3<F>(base_texture.sample<F>(sampler, in.texcoord, mip_level(texels)));
+        }
+        if (attenuation != glm::vec3(0.0f)) {
+            const F distance = glm::length(in.world - broadcast<F>(view.origin));
+            for (int c = 0; c < 3; ++c) albedo[c] = albedo[c] * exp(F(-attenuation[c]) * distance);
         }
         return {vec4<F>(in.world, surface_id<F>(mesh, front)), vec4<F>(select(front, n, -n), F(0.0f)), vec4<F>(albedo, F(1.0f))};
     }

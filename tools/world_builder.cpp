@@ -58,7 +58,7 @@ stages::Material build_material(const scenes::Material& m, std::vector<std::stri
     return r;
 }
 
-// The edges of a mesh that have one triangle only, as that one goes round; corners at one place are one corner.
+// The edges of a mesh that have an odd number of triangles, as most of those go round; corners at one place are one corner.
 struct Edge {
     std::uint32_t from, to;
 };
@@ -77,8 +77,9 @@ std::vector<Edge> open_edges(const scenes::Mesh& mesh) {
     std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return std::pair(ends(a)) < std::pair(ends(b)); });
     std::vector<Edge> open;
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
-        while (j < edges.size() && std::pair(ends(edges[j])) == std::pair(ends(edges[i]))) ++j;
-        if (j - i == 1) open.push_back(edges[i]);
+        std::ptrdiff_t forwards = 0;
+        for (; j < edges.size() && std::pair(ends(edges[j])) == std::pair(ends(edges[i])); ++j) forwards += edges[j].from == edges[i].from ? 1 : -1;
+        if ((j - i) % 2 == 1) open.push_back(forwards > 0 ? edges[i] : Edge{edges[i].to, edges[i].from});
     }
     return open;
 }

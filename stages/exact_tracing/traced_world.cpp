@@ -51,6 +51,38 @@ void TracedWorld::fill(Executor& executor, const World& world) {
     });
 }
 
+glm::vec3 TracedWorld::attenuation_at(const glm::vec3& place) const {
+    constexpr int directions = 14;  // along the axes, and between them
+    const TracedWorldView world = view();
+    struct Vote {
+        std::int32_t mesh, count;
+    };
+    Vote votes[directions];
+    int meshes = 0, outside = 0;
+    for (int k = 0; k < directions; ++k) {
+        glm::vec3 way(0.0f);
+        if (k < 6) way[k / 2] = k % 2 ? 1.0f : -1.0f;
+        else way = glm::normalize(glm::vec3(k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f));
+        const TriangleHierarchyView::Hit<float> hit = world.hierarchy.nearest<float>(place, way, true);
+        if (!hit.found()) continue;
+        const std::int32_t mesh = world.mesh(hit);
+        if (optics_[mesh].transmits == 0 || optics_[mesh].thin_walled != 0) continue;
+        if (glm::dot(way, normals_[hit.triangle].triangle) < 0) {
+            ++outside;
+            continue;
+        }
+        int v = 0;
+        while (v < meshes && votes[v].mesh != mesh) ++v;
+        if (v == meshes) votes[meshes++] = {mesh, 0};
+        ++votes[v].count;
+    }
+    glm::vec3 attenuation(0.0f);
+    int most = outside;
+    for (int v = 0; v < meshes; ++v)
+        if (votes[v].count > most) most = votes[v].count, attenuation = optics_[votes[v].mesh].attenuation;
+    return attenuation;
+}
+
 bool TracedWorld::lies_open(const World& world, const Light& light) {
     // A triangle whose plane has every receiver and the light on one side hides nothing; a tree would tell more.
     constexpr std::int64_t few = 64;

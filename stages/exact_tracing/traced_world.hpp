@@ -91,6 +91,8 @@ public:
     void refit(Executor& executor, const World& world);
     // Whether no receiver hides any part of another from a light: they are few, flat, and bend round it.
     static bool lies_open(const World& world, const Light& light);
+    // Of the dielectric that a place lies in, 1/m: the one from inside of which most directions meet a surface of it first.
+    glm::vec3 attenuation_at(const glm::vec3& place) const;
     TracedWorldView view() const { return {hierarchy_.view(), normals_, optics_.data(), texels_, textured_.data(), static_cast<std::int32_t>(textured_.size())}; }
 
 private:

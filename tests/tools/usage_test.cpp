@@ -74,7 +74,7 @@ TEST_CASE("no command, no such command, no such option: exit code 2 and one line
         "The following argument was not expected: --frobnicate (see nephroid render --help)",
         "The following argument was not expected: two (see nephroid render --help)",
         "--set: 'w2.M' is none of w1.nu w1.nv w1.R w2.N w2.R w3.N w3.R w4.N w4.R w5.G w5.W w5.H w6.S w6.grid w6.iters w7.W w8.W w8.H w8.D "
-        "w8.steps (see nephroid bench --help)",
+        "w8.steps w9.N w9.levels (see nephroid bench --help)",
     };
     const std::vector<Outcome> outcomes = run_all(folder, calls);
     for (std::size_t k = 0; k < calls.size(); ++k) {

@@ -69,6 +69,7 @@ private:
             dielectric = dielectric || world_.material_of(mesh).kind == SurfaceKind::Dielectric;
         }
         if (dielectric) add({.kind = PassKind::TraceSeen, .name = "through specular objects", .why = "glass is looked through", .reads = {"triangles", "points", "eye depth"}, .writes = {"refracted points", "emission"}});
+        if (dielectric && settings_.inner_reflections) add({.kind = PassKind::TraceSeen, .name = "reflected inside specular objects", .why = "glass reflects inside", .reads = {"triangles", "points", "eye depth"}, .writes = {"points reflected inside", "emission"}, .branch = Branch::ReflectedInside});
         if (!seen.empty()) add({.kind = PassKind::TraceSeen, .name = "reflected in specular objects", .why = "smooth surfaces reflect", .reads = {"triangles", "points", "eye depth"}, .writes = {"reflected points", "emission"}, .branch = Branch::Reflected});
     }
 
@@ -117,7 +118,8 @@ private:
         if (listed) with(PassKind::TraversePhotons, "traversal", "photons that are there are listed", {"validity pyramid"}, {"photon list"});
         with(PassKind::SplatPhotons, "splat", "photons are added up", listed ? std::vector<std::string>{"photons", "photon list", "map view"} : std::vector<std::string>{"photons", "map view"}, {"map flux"});
         with(PassKind::ResolveCaustic, "resolve", "flux becomes irradiance", {"map flux", "map receivers"}, {"caustic map"});
-        with(PassKind::CausticLight, "shade", "receivers are lit by the caustic", {"points", "caustic map"}, {"caustic"});
+        if (exact()) with(PassKind::HiddenCaustic, "hidden", "some of it lands where the light does not see", {"photons"}, {"hidden caustic map"});
+        with(PassKind::CausticLight, "shade", "receivers are lit by the caustic", exact() ? std::vector<std::string>{"points", "caustic map", "hidden caustic map"} : std::vector<std::string>{"points", "caustic map"}, {"caustic"});
     }
 
     void plan_emission() {

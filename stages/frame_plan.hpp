@@ -19,6 +19,7 @@ enum class PassKind : int {
     TraversePhotons,  // per caustic map: hierarchical
     SplatPhotons,     // per caustic map
     ResolveCaustic,   // per caustic map
+    HiddenCaustic,    // per caustic map: what lands where its light does not see
     SurfacePoints,    // what the eye sees
     HideBehind,       // specular objects hide what is behind them
     SeenLayers,       // per specular object in view

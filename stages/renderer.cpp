@@ -42,7 +42,7 @@ struct PointPictures {
     Texture positions, normals, albedo;
     SurfacePoints view() const { return {positions, normals, albedo}; }
 };
-enum PointSource { first, refracted, reflected, point_sources };
+enum PointSource { first, refracted, reflected, reflected_inside, point_sources };
 
 // A specular object as a view sees it.
 struct LayerPictures {
@@ -115,6 +115,9 @@ struct Renderer::Impl : PassDraws {
     SolidLayers caster, lit_side;
     Texture occluders;
     TracedWorld traced;
+    Texture hidden_positions, hidden_irradiance, hidden_depth;  // of photons where the light does not see; exact tracing
+    CubeViews hidden_faces;
+    bool has_hidden = false;  // of the last map
     std::vector<Texture> photon_positions, photon_fluxes;  // per map
     Texture accounts, losses;
     std::vector<CausticPictures> maps;
@@ -203,9 +206,12 @@ struct Renderer::Impl : PassDraws {
     PhotonPlacement placement(const Pass& pass, bool wide) const;
     TargetView flux_target(const Light& light, bool wide) const;
     void splat(const Pass& pass);
-    void splat_sprites(const Pass& pass, bool wide);
+    void splat_sprites(const mapping::PlacePhoton& place, const TargetView& flux);
+    void store_receiver_sides(const View& view, const TargetView& sides, const TargetView& depth);
     void splat_hierarchical(const Pass& pass, bool wide);
     void resolve(const Pass& pass);
+    void resolve_layer(const Texture& flux, int levels, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size);
+    void hidden_caustic(const Pass& pass);
     void surface_points();
     void hide_behind();
     void impostor(const Pass& pass);
@@ -231,7 +237,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     // Lights may stand outside the bounds of what they light.
     for (const Light& l : world.lights)
         if (l.kind != LightKind::Directional) reach = std::max(reach, glm::length(l.position - scene_centre()) + glm::length(world.high - world.low));
-    for (int k = 0; k < (any_specular ? point_sources : 1); ++k) {
+    for (int k = 0; k < (any_specular ? exact() ? point_sources : reflected_inside : 1); ++k) {
         points[k].positions = target(Format::RGBA32F, width, height, "positions");
         points[k].normals = target(Format::RGBA32F, width, height, "normals");
         points[k].albedo = target(Format::RGBA32F, width, height, "albedo");
@@ -259,7 +265,11 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
     }
     if (!plan.maps.empty()) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
-        if (!exact()) {
+        if (exact()) {
+            hidden_positions = target(Format::RGBA32F, n, n, "hidden photon positions");
+            hidden_irradiance = layered(Format::RGBA32F, wide, 6, "hidden caustic map");
+            hidden_depth = layered(Format::D32F, wide, 6, "hidden caustic map depth");
+        } else {
             receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
             receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
             caster_layers = LayerPictures(n, n, settings.solid_layers);
@@ -502,7 +512,11 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<Ta
     photons.mesh = pass.mesh;
     photons.other_branch_followed = map.other_branch;
     photons.lie_open = TracedWorld::lies_open(world, light);
-    draw_screen("photons", photons, targets);
+    const Mesh& mesh = world.meshes[pass.mesh];
+    photons.middle = (mesh.low + mesh.high) * 0.5f;
+    std::array<TargetView, max_render_targets> with_hidden = targets;
+    with_hidden[4] = hidden_positions.mip();
+    draw_screen("photons", photons, with_hidden);
 }
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
@@ -516,21 +530,22 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
     audit.trapped += lost.x, audit.missed += lost.y;
 }
 
+void Renderer::Impl::store_receiver_sides(const View& view, const TargetView& sides, const TargetView& depth) {
+    clear(sides);
+    clear(depth);
+    draw_meshes(state("map receivers", CullMode::None, depth_greater), Sides::Seen, view, {sides}, depth, [&](int m) { return !specular(m); },
+                [&](int m) { return StoreReceiverSide{world.meshes[m].triangles, view, m}; });
+}
+
 void Renderer::Impl::caustic_receivers(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
-    const auto receivers = [&](const View& view, const TargetView& sides, const TargetView& depth) {
-        clear(sides);
-        clear(depth);
-        draw_meshes(state("map receivers", CullMode::None, depth_greater), Sides::Seen, view, {sides}, depth, [&](int m) { return !specular(m); },
-                    [&](int m) { return StoreReceiverSide{world.meshes[m].triangles, view, m}; });
-    };
-    receivers(map.fit.view, map_sides.mip(), map.depth.mip());
+    store_receiver_sides(map.fit.view, map_sides.mip(), map.depth.mip());
     if (!map.fit.outside) return;
     const CubeViews faces = cube_views(light.position);
     for (int layer = 0; layer < wide_layers(light); ++layer)
-        receivers(light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], wide_sides.mip(0, layer), map.wide_depth.mip(0, layer));
+        store_receiver_sides(light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], wide_sides.mip(0, layer), map.wide_depth.mip(0, layer));
 }
 
 PhotonPlacement Renderer::Impl::placement(const Pass& pass, bool wide) const {
@@ -548,21 +563,23 @@ void Renderer::Impl::splat(const Pass& pass) {
     if (map.fit.empty) return;
     for (const bool wide : {false, true}) {
         if (wide && !map.fit.outside) return;
-        if (settings.technique == Technique::Hierarchical) splat_hierarchical(pass, wide);
-        else splat_sprites(pass, wide);
+        if (settings.technique == Technique::Hierarchical) {
+            splat_hierarchical(pass, wide);
+            continue;
+        }
+        // Vertices of a mesh have no neighbours in the buffer.
+        const float size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
+        const TargetView flux = flux_target(world.lights[pass.light], wide);
+        clear(flux);
+        splat_sprites({placement(pass, wide), photon_fluxes[pass.map], log2_of(settings.photons), size}, flux);
     }
 }
 
-void Renderer::Impl::splat_sprites(const Pass& pass, bool wide) {
-    // Vertices of a mesh have no neighbours in the buffer.
-    const float size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
-    const mapping::PlacePhoton place{placement(pass, wide), photon_fluxes[pass.map], log2_of(settings.photons), size};
+void Renderer::Impl::splat_sprites(const mapping::PlacePhoton& place, const TargetView& flux) {
     PipelineState s = screen_state("splat photons");
     s.topology = Topology::PointList;
     s.blend = {blend_additive};
     s.rasterizer.depth_clip = false;
-    const TargetView flux = flux_target(world.lights[pass.light], wide);
-    clear(flux);
     draw(Program{place, mapping::DepositFlux{}}, s, {.vertices = vertex_count(std::int64_t{settings.photons} * settings.photons), .render_targets = {flux}});
 }
 
@@ -577,29 +594,46 @@ void Renderer::Impl::splat_hierarchical(const Pass& pass, bool wide) {
     audit.discarded += sum_of(device.executor(), accounts, row_sums).x;
 }
 
+void Renderer::Impl::resolve_layer(const Texture& flux, int levels, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
+    const Texture& sums = size == settings.map_size ? map_accounts : wide_accounts;
+    const ReceiverTexels receivers{sides, depth, view, layer, size};
+    const std::array<TargetView, max_render_targets> targets = {irradiance.mip(0, layer), sums.mip()};
+    if (levels > 1) {
+        hierarchical::PhotonGather::sum_levels(*this, flux, layer, levels);
+        draw_screen("resolve caustic map", hierarchical::ResolveLevels{{flux, 1, layer}, receivers}, targets);
+    } else {
+        draw_screen("resolve caustic map", ResolveIrradiance{flux, receivers}, targets);
+    }
+    if (!settings.audit) return;
+    const glm::dvec4 sum = sum_of(device.executor(), sums, row_sums);
+    audit.deposited += sum.x, audit.beside += sum.y;
+}
+
 void Renderer::Impl::resolve(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
-    const auto resolve_layer = [&](const Texture& flux, const Texture& sides, const Texture& depth, const Texture& irradiance, const View& view, int layer, int size) {
-        const Texture& sums = size == settings.map_size ? map_accounts : wide_accounts;
-        const ReceiverTexels receivers{sides, depth, view, layer, size};
-        const std::array<TargetView, max_render_targets> targets = {irradiance.mip(0, layer), sums.mip()};
-        if (map_levels() > 1) {
-            hierarchical::PhotonGather::sum_levels(*this, flux, layer, map_levels());
-            draw_screen("resolve caustic map", hierarchical::ResolveLevels{{flux, 1, layer}, receivers}, targets);
-        } else {
-            draw_screen("resolve caustic map", ResolveIrradiance{flux, receivers}, targets);
-        }
-        if (!settings.audit) return;
-        const glm::dvec4 sum = sum_of(device.executor(), sums, row_sums);
-        audit.deposited += sum.x, audit.beside += sum.y;
-    };
-    resolve_layer(map_flux, map_sides, map.depth, map.irradiance, map.fit.view, 0, settings.map_size);
+    resolve_layer(map_flux, map_levels(), map_sides, map.depth, map.irradiance, map.fit.view, 0, settings.map_size);
     if (!map.fit.outside) return;
     const CubeViews faces = cube_views(light.position);
     for (int layer = 0; layer < wide_layers(light); ++layer)
-        resolve_layer(wide_flux, wide_sides, map.wide_depth, map.wide_irradiance, light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], layer, settings.map_size / 2);
+        resolve_layer(wide_flux, map_levels(), wide_sides, map.wide_depth, map.wide_irradiance, light.kind == LightKind::Directional ? parallel_view(light) : faces.face[layer], layer, settings.map_size / 2);
+}
+
+// Little light, and mostly none: sprites do for every technique.
+void Renderer::Impl::hidden_caustic(const Pass& pass) {
+    has_hidden = !TracedWorld::lies_open(world, world.lights[pass.light]) && sum_of(device.executor(), hidden_positions, row_sums).w > 0;
+    if (!has_hidden) return;
+    const Mesh& mesh = world.meshes[pass.mesh];
+    const int size = settings.map_size / 2;
+    hidden_faces = cube_views((mesh.low + mesh.high) * 0.5f);
+    for (int layer = 0; layer < 6; ++layer) store_receiver_sides(hidden_faces.face[layer], wide_sides.mip(0, layer), hidden_depth.mip(0, layer));
+    PhotonPlacement place{hidden_positions, View(), true, true, hidden_faces, View(), size};
+    place.shared = false;
+    const TargetView flux = wide_flux.layers(0, 6);
+    clear(flux);
+    splat_sprites({place, photon_fluxes[pass.map], log2_of(settings.photons), settings.sprite_size}, flux);
+    for (int layer = 0; layer < 6; ++layer) resolve_layer(wide_flux, 1, wide_sides, hidden_depth, hidden_irradiance, hidden_faces.face[layer], layer, size);
 }
 
 void Renderer::Impl::surface_points() {
@@ -658,6 +692,8 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     trace.tracer.bounces = settings.bounces;
     trace.tracer.branch = pass.branch;
     trace.tracer.light = false;
+    if (settings.inner_reflections) trace.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
+    trace.tracer.seed = ~static_cast<std::uint64_t>(pass.branch);
     trace.eye = eye();
     trace.width = width, trace.height = height;
     trace.first = points[first].positions;
@@ -668,7 +704,7 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
 }
 
 void Renderer::Impl::store_seen(const Pass& pass, const auto& shader) {
-    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : refracted];
+    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : pass.branch == Branch::ReflectedInside ? reflected_inside : refracted];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
     draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});
@@ -704,13 +740,19 @@ void Renderer::Impl::direct_light(const Pass& pass) {
 void Renderer::Impl::caustic_light(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     const CausticPictures& from = maps[pass.map];
-    if (from.fit.empty) return;
+    const bool hidden = exact() && has_hidden;
+    if (from.fit.empty && !hidden) return;
     CausticMap map;
     map.focus = from.fit.view;
     map.focus_irradiance = from.irradiance;
     map.focus_depth = from.depth;
     map.size = settings.map_size;
+    map.has_focus = !from.fit.empty;
     map.has_wide = from.fit.outside;
+    map.has_hidden = hidden;
+    map.hidden_faces = hidden_faces;
+    map.hidden_irradiance = hidden_irradiance;
+    map.hidden_depth = hidden_depth;
     map.wide_cube = light.kind != LightKind::Directional;
     if (map.wide_cube) map.faces = cube_views(light.position);
     else map.parallel = parallel_view(light);
@@ -745,6 +787,7 @@ void Renderer::Impl::run(const Pass& pass) {
             return;
         case PassKind::SplatPhotons: return splat(pass);
         case PassKind::ResolveCaustic: return resolve(pass);
+        case PassKind::HiddenCaustic: return hidden_caustic(pass);
         case PassKind::SurfacePoints: return surface_points();
         case PassKind::HideBehind: return hide_behind();
         case PassKind::SeenLayers: return draw_layers(eye(), pass.mesh, seen_layers);

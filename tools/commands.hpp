@@ -18,5 +18,6 @@ void add_chart_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_reference_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
+void add_tables_command(CLI::App& app);
 
 }  // namespace nephroid

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vector_relational.hpp>
+#include <limits>
 
+#include "stages/hierarchical_caustic_maps/interpolated_splats.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/renderer.hpp"
 #include "stages/view.hpp"
@@ -28,6 +30,24 @@ bool fits_one_picture(const stages::Light& light, const stages::Mesh& mesh) {
     });
 }
 
+// How far apart photons may be, in texels, for the widest splats to reach from one to the next.
+float splat_reach(const stages::Settings& settings) {
+    namespace hierarchical = stages::hierarchical;
+    if (settings.technique == stages::Technique::Mapping) {
+        constexpr float widest = stages::mapping::PlacePhoton::widest / stages::mapping::PlacePhoton::overlap;
+        return settings.sprite_size == 0 ? widest : std::numeric_limits<float>::infinity();
+    }
+    const hierarchical::Variant v = settings.hierarchical_variant;
+    if (v == hierarchical::Variant::Interpolated) return hierarchical::interpolated_widest / hierarchical::overlap;
+    if (v == hierarchical::Variant::Constant) return std::numeric_limits<float>::infinity();
+    if (!hierarchical::has_one_size(v)) {
+        hierarchical::SplatSize size;
+        size.threshold = settings.splat_threshold;
+        return size.widest() / hierarchical::overlap;
+    }
+    return settings.sprite_size == 0 ? hierarchical::default_size(v, settings.map_size, settings.photons) / hierarchical::overlap : std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
 std::vector<std::string> failure_notes(const stages::World& world, const stages::Settings& settings) {
@@ -46,8 +66,7 @@ std::vector<std::string> failure_notes(const stages::World& world, const stages:
     if (mirrors && settings.tracing == stages::Tracing::ImageSpace && settings.intersection != stages::Intersection::Bisection)
         notes.push_back("Newton's and the secant intersection diverge for light that mirrors turn back, and lose it: bisection does not");
     const float spacing = static_cast<float>(settings.map_size) / static_cast<float>(settings.photons);
-    constexpr float reach = stages::mapping::PlacePhoton::widest / stages::mapping::PlacePhoton::overlap;
-    if (settings.sprite_size == 0 && spacing > reach)
+    if (spacing > splat_reach(settings))
         notes.push_back(std::to_string(settings.photons) + "^2 photons are too few for a caustic map of " + std::to_string(settings.map_size) +
                         "^2 texels: splats do not reach from one to the next, and the caustic falls into spots");
     return notes;

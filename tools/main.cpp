@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
     nephroid::add_chart_command(app);
     nephroid::add_bench_command(app);
     nephroid::add_stability_command(app);
+    nephroid::add_tables_command(app);
     const int code = run(app, argc, argv);
     // A hash or a report that nobody got is no success.
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;

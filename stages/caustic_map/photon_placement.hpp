@@ -14,6 +14,7 @@ struct PhotonPlacement {
     CubeViews faces;
     View parallel;
     int map_size = 0;   // of the map that is drawn into
+    bool shared = true;  // between the focus and the wide map; else all photons are this map's
 
     // A place on a map: x and y in texels, down from the top left.
     template <class F>
@@ -50,6 +51,7 @@ struct PhotonPlacement {
     // How much of it is this map's.
     template <class F>
     F share(const vec3<F>& position) const {
+        if (!shared) return F(1.0f);
         const F focused = focus_share(position);
         return wide ? F(1.0f) - focused : focused;
     }

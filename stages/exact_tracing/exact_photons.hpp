@@ -1,6 +1,8 @@
 // Photons of a caustic map, traced exactly: as mapping/photon_pass.hpp, every pixel of the light's view of an object is one,
 // but nothing is drawn beforehand. The ray through a pixel's middle belongs to the object if that is what it meets first.
 // Where the object is all round the light, or goes beyond what one view holds, pixels are those of an octahedron.
+//
+// Caustic maps look from the light. What lands where that does not see has a map round the object's middle.
 #pragma once
 #include "stages/exact_tracing/exact_tracer.hpp"
 #include "stages/light_source.hpp"
@@ -18,9 +20,11 @@ struct TraceExactPhotons {
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
     bool lie_open = false;  // no receiver hides any part of another from the light
 
-    // Targets as TracePhotons'.
+    glm::vec3 middle{0.0f};  // of the object
+
+    // Targets as TracePhotons', and positions once more, of photons that the light does not see and the object's middle does.
     template <class F>
-    std::array<vec4<F>, 4> operator()(const PixelInput<F>& pixel) const {
+    std::array<vec4<F>, 5> operator()(const PixelInput<F>& pixel) const {
         const F u = pixel.position.x * F(1.0f / static_cast<float>(side)), v = pixel.position.y * F(1.0f / static_cast<float>(side));
         const vec3<F> corner = octahedron_point(u * F(2.0f) - F(1.0f), v * F(2.0f) - F(1.0f));
         ExactTracer::Ray<F> ray;
@@ -41,10 +45,11 @@ struct TraceExactPhotons {
             ray.ledger.clear(!ray.by_chance);
             ray.landed = ray.landed & ray.by_chance;
         }
-        // Caustic maps look from the light. What lands where that does not see has no place in them.
-        const LaneMask<F> hidden = ray.landed & !shown(ray);
-        ray.ledger.drop(hidden, ray.ledger.missed);
-        ray.landed = ray.landed & !hidden;
+        const vec3<F> from = view.perspective ? broadcast<F>(view.origin) : ray.position - broadcast<F>(view.forward) * (glm::dot(ray.position - broadcast<F>(view.origin), broadcast<F>(view.forward)) - F(view.near_plane));
+        const LaneMask<F> shown = lie_open ? ray.landed & faces(ray, light.towards(ray.position)) : is_seen(ray, from, ray.landed);
+        const LaneMask<F> hidden = lie_open ? LaneMask<F>(false) : is_seen(ray, broadcast<F>(middle), ray.landed & !shown);
+        ray.ledger.drop(ray.landed & !shown & !hidden, ray.ledger.missed);
+        ray.landed = shown | hidden;
         // A parallel light's path has no beginning.
         const F window = light.window(ray.length);
         ray.ledger.scale(ray.landed, vec3<F>(window), ray.ledger.missed);
@@ -53,24 +58,28 @@ struct TraceExactPhotons {
         const vec3<F> emitted = light.emission(start) * (all_round ? solid_angle : view.texel_measure(u, v, side, side));
         const vec3<F> flux = select(ray.landed, emitted * ray.ledger.carried, vec3<F>(F(0.0f)));
         const auto total = [&](const vec3<F>& share) { return select(lit, emitted.x * share.x + emitted.y * share.y + emitted.z * share.z, F(0.0f)); };
-        return {vec4<F>(ray.position, select(ray.landed, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
+        return {vec4<F>(ray.position, select(shown, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
                 vec4<F>(total(ray.ledger.started), total(ray.ledger.absorbed), total(ray.ledger.not_followed), total(ray.ledger.correction)),
-                vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f))};
+                vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f)), vec4<F>(ray.position, select(hidden, F(1.0f), F(0.0f)))};
     }
 
 private:
-    // Whether the light sees the landing place, specular objects aside, and from the side that was landed on.
+    // The side that was landed on is one that is seen, and looks that way.
     template <class F>
-    LaneMask<F> shown(const ExactTracer::Ray<F>& ray) const {
-        const vec3<F> towards = light.towards(ray.position);
-        LaneMask<F> seen = ray.landed & !ray.unseen & (glm::dot(ray.normal, towards) > F(0.0f));
-        if (lie_open || none(seen)) return seen;
+    static LaneMask<F> faces(const ExactTracer::Ray<F>& ray, const vec3<F>& towards) {
+        return (!ray.unseen) & (glm::dot(ray.normal, towards) > F(0.0f));
+    }
+    // Whether the landing place is seen from a place, specular objects aside.
+    template <class F>
+    LaneMask<F> is_seen(const ExactTracer::Ray<F>& ray, const vec3<F>& from, LaneMask<F> active) const {
+        const vec3<F> way = from - ray.position, towards = glm::normalize(way);
+        const LaneMask<F> seen = active & faces(ray, towards);
+        if (none(seen)) return seen;
         const TriangleHierarchyView& hierarchy = tracer.world.hierarchy;
-        const vec3<F> from = view.perspective ? broadcast<F>(view.origin) : ray.position - broadcast<F>(view.forward) * (glm::dot(ray.position - broadcast<F>(view.origin), broadcast<F>(view.forward)) - F(view.near_plane));
         const F distance = hierarchy.nearest_receiver(from, -towards, seen).distance;
         // The place is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
         const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(ray.normal, towards);
-        return seen & (distance + slack >= glm::length(ray.position - from));
+        return seen & (distance + slack >= glm::length(way));
     }
 };
 

@@ -173,7 +173,10 @@ private:
             ledger.scale(meets, vec3<F>(select(reflects, reflectance, F(1.0f) - reflectance)), ledger.not_followed);
         } else {
             const LaneMask<F> gambles = meets & ray.by_chance & !total, splits = meets & !ray.by_chance & !total;
-            if (any(gambles)) {
+            if (!light) {
+                // Noise in every pixel would cost more than what little is reflected there.
+                ledger.scale(gambles, vec3<F>(F(1.0f) - reflectance), ledger.not_followed);
+            } else if (any(gambles)) {
                 const F chance = uniform_from_bits<F>(random_bits<LaneUint<F>>(seed, ray.index, static_cast<std::uint32_t>(event))[0]);
                 reflects = reflects | (gambles & (chance < reflectance));
             }

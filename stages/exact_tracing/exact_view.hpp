@@ -6,8 +6,8 @@
 
 namespace nephroid::stages {
 
-// One Fresnel branch at the first surface, for the pixels in which something specular is that; from there on as far as there
-// is a way through. The others are discarded.
+// One branch, for the pixels in which something specular is seen first; where looks part again, behind the surface inside which
+// is the third branch, they go one way by chance. The other pixels are discarded.
 struct TraceSeenExactly {
     ExactTracer tracer;  // of looks
     View eye;
@@ -30,8 +30,12 @@ struct TraceSeenExactly {
         ray.direction = glm::normalize(eye.ray(pixel.position.x * F(1.0f / static_cast<float>(width)), pixel.position.y * F(1.0f / static_cast<float>(height))));
         ray.active = mine;
         ray.index = as_uint(y * width + x);
-        ray.by_chance = LaneMask<F>(false);
+        ray.by_chance = LaneMask<F>(tracer.branch == Branch::Reflected);
         tracer.follow(ray, 0);
+        if (tracer.branch == Branch::ReflectedInside) {
+            ray.landed = ray.landed & ray.by_chance;
+            ray.escaped = ray.escaped & ray.by_chance;
+        }
         const LaneMask<F> landed = mine & ray.landed;
         const vec4<F> zero(F(0.0f));
         out.color[3] = select(mine & ray.escaped, vec4<F>(surroundings.radiance(ray.direction) * ray.escaping, F(0.0f)), zero);

@@ -36,7 +36,7 @@ struct TraceVertexPhotons {
         const vec3<F> direction = directional ? broadcast<F>(photons.light.direction) : glm::normalize(to_vertex);
         const vec3<F> area = areas.load<F>(as_int(ids.vertex_id)).area;
         const F across = -glm::dot(area, direction);
-        const LaneMask<F> lit = (p.z > F(0.0f)) & (front > F(0.0f)) & (p.nearness >= front - tolerance) & (p.nearness > photons.occluders.fetch<F>(x, y).x) & (across > F(0.0f));
+        const LaneMask<F> lit = ((p.z > F(0.0f)) | LaneMask<F>(!solid.view.perspective)) & (front > F(0.0f)) & (p.nearness >= front - tolerance) & (p.nearness > photons.occluders.fetch<F>(x, y).x) & (across > F(0.0f));
         // The vertex's share of the light: irradiance across times area, or intensity times solid angle.
         const F measure = directional ? across : across / glm::dot(to_vertex, to_vertex);
         const std::array<vec4<F>, 4> r = photons.trace(v.position, direction, photons.light.emission(v.position) * measure, v.normal, glm::normalize(area), ids.vertex_id, lit);

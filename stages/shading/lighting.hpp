@@ -60,18 +60,26 @@ struct CausticMap {
     Texture2DArrayView<Format::RGBA32F> focus_irradiance;
     Texture2DArrayView<Format::D32F> focus_depth;
     int size = 0;
-    bool has_wide = false, wide_cube = false;
+    bool has_focus = true, has_wide = false, wide_cube = false;
     CubeViews faces;  // or
     View parallel;
     Texture2DArrayView<Format::RGBA32F> wide_irradiance;
     Texture2DArrayView<Format::D32F> wide_depth;
     int wide_size = 0;
+    // What lies where the light does not see, round the object.
+    bool has_hidden = false;
+    CubeViews hidden_faces;
+    Texture2DArrayView<Format::RGBA32F> hidden_irradiance;
+    Texture2DArrayView<Format::D32F> hidden_depth;
 
     // Irradiance at a point of a surface: the four texels round it that show the same surface.
     template <class F>
     vec3<F> irradiance(const vec3<F>& position, F id) const {
-        const View::Place<F> p = focus.place(position);
-        vec3<F> sum = read(focus_irradiance, focus_depth, size, LaneInt<F>(0), p.u, p.v, p.nearness, id, p.z > F(0.0f));
+        vec3<F> sum(F(0.0f));
+        if (has_focus) {
+            const View::Place<F> p = focus.place(position);
+            sum = read(focus_irradiance, focus_depth, size, LaneInt<F>(0), p.u, p.v, p.nearness, id, (p.z > F(0.0f)) | LaneMask<F>(!focus.perspective));
+        }
         if (has_wide) {
             if (wide_cube) {
                 const CubeViews::Place<F> w = faces.place(position);
@@ -80,6 +88,10 @@ struct CausticMap {
                 const View::Place<F> w = parallel.place(position);
                 sum = sum + read(wide_irradiance, wide_depth, wide_size, LaneInt<F>(0), w.u, w.v, w.nearness, id, LaneMask<F>(true));
             }
+        }
+        if (has_hidden) {
+            const CubeViews::Place<F> h = hidden_faces.place(position);
+            sum = sum + read(hidden_irradiance, hidden_depth, wide_size, h.layer, h.u, h.v, h.nearness, id, LaneMask<F>(true));
         }
         return sum;
     }

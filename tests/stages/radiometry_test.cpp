@@ -129,6 +129,35 @@ TEST_CASE("flux in is flux out: a thin plate of index 1 changes nothing but the 
     CHECK(pixels < 0.05 * with.width * with.height);  // the shadow's rim
 }
 
+TEST_CASE("a sun's caustic lies before the scene's middle as well as behind it") {
+    Device device;
+    scenes::Scene scene = empty_scene();
+    add_floor(scene, add_lambert(scene, glm::vec3(0.7f)), 0.3f, 1.0f);
+    add_floor(scene, 0, 1, -4.0f);
+    scenes::Material glass;
+    glass.transmission = 1;
+    glass.roughness = 0;
+    glass.ior = 1;
+    scene.materials.push_back(glass);
+    add_floor(scene, 1, 0.5f, 2.0f);
+    add_camera_above(scene, 1.8f, 0.6f);  // below the plate
+    scenes::Light sun;
+    sun.type = scenes::LightType::Directional;
+    sun.direction = {0, -1, 0};
+    sun.intensity = glm::vec3(2);
+    scene.lights.push_back(sun);
+    for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+        stages::Settings settings = small(16, 16, 1024, 512);
+        settings.tracing = tracing;
+        const Rendered r = render(device, scene, settings);
+        double mean = 0;
+        for (int y = 4; y < 12; ++y)
+            for (int x = 4; x < 12; ++x) mean += r.at(r.caustic, x, y).x / 64.0;
+        CHECK(mean == doctest::Approx(0.7 / 3.14159265 * 2).epsilon(0.01).scale(0));
+        CHECK(r.at(r.direct, 8, 8).x == 0);
+    }
+}
+
 TEST_CASE("glass absorbs by Beer's law, mirrors by their colour") {
     // A slab of index 1 and thickness h under a high lamp: what is deposited is emitted times exp(-sigma h).
     Device device;

@@ -355,6 +355,15 @@ TEST_CASE("numbers that are none, or too many") {
         {{"--threads", "-1"}, "--threads: "},
         {{"--lanes", "3"}, "--lanes: 3 not in {0,1,4,8,16}"},
         {{"--technique", "magic"}, "--technique: magic not in {"},
+        {{"--variant", "varying"}, "--variant: varying is none of --technique mapping, which has two-sided, tutorial, vertices"},
+        {{"--technique", "auto", "--variant", "gather"}, "--variant: gather is none of --technique auto, which has two-sided, tutorial, vertices"},
+        {{"--technique", "hierarchical", "--variant", "tutorial"}, "--variant: tutorial is none of --technique hierarchical, which has gather, constant, thin-lens, interpolated, hierarchical, combine-last, combine-all, varying-single, varying"},
+        {{"--technique", "hierarchical", "--variant", "magic"}, "--variant: magic not in {"},
+        {{"--technique", "hierarchical", "--map-size", "1000"}, "--map-size: --variant varying needs a multiple of 16, got 1000"},
+        {{"--technique", "hierarchical", "--splat-size", "3"}, "--splat-size: --variant varying has splats of many sizes"},
+        {{"--technique", "hierarchical", "--variant", "gather", "--discard-wide-splats"}, "--discard-wide-splats: --variant gather has no splats that are too wide"},
+        {{"--discard-wide-splats"}, "--discard-wide-splats: --technique mapping has no splats that are too wide"},
+        {{"--technique", "hierarchical", "--splat-threshold", "0"}, "--splat-threshold: '0' is not a number from 1 to 64"},
         {{"--splat-size", "nan"}, "--splat-size: 'nan' is not a number from 0 to 64"},
     };
     for (const Case& c : cases) {
@@ -362,6 +371,7 @@ TEST_CASE("numbers that are none, or too many") {
         CHECK(option_refusal(c.arguments).starts_with(c.words));
     }
     CHECK(option_refusal({"--size", "64x48", "--photons", "65536", "--samples", "3", "--lanes", "16", "--splat-size", "64"}) == "none");
+    CHECK(option_refusal({"--technique", "hierarchical", "--variant", "combine-all", "--map-size", "1000", "--splat-size", "5"}) == "none");
 }
 
 // Not by the program: if it did not refuse, it would take the whole machine.

@@ -29,7 +29,7 @@ bool has(const std::vector<std::string>& list, const std::string& item) { return
 TEST_CASE("--help of the program and of every command: exit code 0, on standard output") {
     const Folder folder;
     const std::vector<std::string> names = commands();
-    for (const std::string known : {"render", "plan", "reference", "compare", "chart", "stability", "bench"}) CHECK(has(names, known));
+    for (const std::string known : {"render", "plan", "reference", "compare", "chart", "stability", "bench", "tables"}) CHECK(has(names, known));
     std::vector<std::vector<std::string>> calls;
     for (const std::string& name : names) calls.push_back({name, calls.size() % 2 ? "-h" : "--help"});
     const std::vector<Outcome> outcomes = run_all(folder, calls);

@@ -34,6 +34,7 @@ Work work_of(stages::PassKind kind, const stages::Settings& settings) {
         case SplatPhotons:
         case TraversePhotons: return Work::Splats;
         case ValidityPyramid:
+        case HiddenCaustic:
         case ResolveCaustic: return Work::MapTexels;
         case TraceSeen: return Work::SeenThrough;
         case Surroundings:
@@ -68,6 +69,7 @@ double texels_of(const RenderedPass& pass, const stages::Settings& s) {
         case FitCausticView: return squared(s.photons);
         case CausticReceivers:
         case SplatPhotons:
+        case HiddenCaustic:
         case ResolveCaustic: return squared(s.map_size);
         case ValidityPyramid: return squared(s.photons) / 3;  // of 1/4, 1/16 ... of the photons
         case TraversePhotons: return 0;

@@ -147,6 +147,7 @@ double expected_cost(const Probe& probe, const stages::Settings& s) {
             case ReceiverMap: passes.push_back(scaled(pass, squared(static_cast<double>(s.receiver_map_size) / from.receiver_map_size))); break;
             case Impostor: passes.push_back(scaled(pass, squared(static_cast<double>(s.impostor_size) / from.impostor_size))); break;
             case CausticReceivers:
+            case HiddenCaustic:
             case ResolveCaustic: passes.push_back(scaled(pass, texels)); break;
             case CasterLayers: passes.push_back(scaled(pass, photons)); break;
             case Photons:

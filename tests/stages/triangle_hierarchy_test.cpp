@@ -308,6 +308,52 @@ TEST_CASE("nothing gets out of closed meshes: a million rays at insides, edges a
     CHECK(out == 0);
 }
 
+TEST_CASE("needles are met where exact arithmetic says so, and within their own boxes") {
+    // Three points next to a line through the ray: what floats make of the edge functions has few right digits, or none.
+    Device device;
+    std::mt19937 random(17);
+    std::uniform_real_distribution<float> unit(0.1f, 1), both(-1, 1);
+    int met = 0, without_a_digit = 0, beside = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const bool level = i % 2 == 0;
+        HierarchyTriangle t{};
+        const glm::vec3 along(both(random), both(random), level ? 0.0f : both(random)), middle(0, 0, 2);
+        const float at[3] = {-unit(random), unit(random), both(random)};
+        for (int c = 0; c < 3; ++c)
+            for (int k = 0; k < 3; ++k) t.corner[c][k] = middle[k] + at[c] * along[k];
+        TriangleHierarchyView alone;
+        alone.triangles = &t;
+        alone.root = ~0;
+        alone.empty = false;
+        alone.low = glm::vec3(-3);
+        alone.high = glm::vec3(3);
+        alone.largest = 3;
+        const glm::vec3 direction = level ? glm::vec3(0, 0, 1) : glm::normalize(glm::vec3(both(random), both(random), 1));
+        const glm::vec3 from = level ? glm::vec3(0) : middle - 2.0f * direction;
+        const auto hit = alone.nearest<float>(from, direction, true);
+        if (level) {
+            // Along the third axis nothing is sheared, and doubles hold products of floats.
+            const auto edge = [&](int a, int b) { return double{t.corner[a][0]} * t.corner[b][1] - double{t.corner[a][1]} * t.corner[b][0]; };
+            const auto edge_in_floats = [&](int a, int b) { return t.corner[a][0] * t.corner[b][1] - t.corner[a][1] * t.corner[b][0]; };
+            const double u = edge(2, 1), v = edge(0, 2), w = edge(1, 0);
+            const bool inside = (std::min({u, v, w}) >= 0 || std::max({u, v, w}) <= 0) && u + v + w != 0;
+            CHECK(hit.found() == inside);
+            met += inside;
+            without_a_digit += inside && edge_in_floats(2, 1) == 0 && edge_in_floats(0, 2) == 0 && edge_in_floats(1, 0) == 0;
+        } else if (hit.found()) {
+            const float error = 2 * alone.error_at(from);
+            for (int k = 0; k < 3; ++k) {
+                const float place = from[k] + hit.distance * direction[k];
+                const auto [low, high] = std::minmax({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
+                beside += place < low - error || place > high + error;
+            }
+        }
+    }
+    CHECK(met > 1000);
+    CHECK(without_a_digit > 100);
+    CHECK(beside == 0);
+}
+
 TEST_CASE("without triangles, or with none that has an area, nothing is met") {
     Device device;
     std::vector<World> worlds(2);

@@ -307,6 +307,11 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         }
         measure_vertices();
     }
+    if (settings.technique == Technique::Hierarchical) {
+        // A narrower splat may have no texel's middle well inside it: its mask would sum up to nothing.
+        if (!(settings.splat_threshold >= hierarchical::narrowest)) faults.add("splat_threshold", "must be at least what the narrowest splat takes");
+        if (settings.sprite_size != 0 && !(settings.sprite_size >= hierarchical::narrowest)) faults.add("sprite_size", "must be at least what the narrowest splat takes");
+    }
     if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
 }

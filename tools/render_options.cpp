@@ -75,7 +75,7 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
     c.add_option("--map-size", settings.map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
-    c.add_option("--splat-threshold", settings.splat_threshold, "varying: from twice so many texels on a splat goes to a coarser level of the map")->check(number_in(1, 64))->capture_default_str();
+    c.add_option("--splat-threshold", settings.splat_threshold, "varying: from twice so many texels on a splat goes to a coarser level of the map")->check(number_in(2, 64))->capture_default_str();
     c.add_option("--splat-form", splat_form, "varying, varying-single, interpolated: splats as wide as the farther neighbour is away, or as the area between neighbours asks for")
         ->check(CLI::IsMember({"max-distance", "area"}))->capture_default_str();
     c.add_flag("--discard-wide-splats", settings.discard_wide_splats, "varying, varying-single: leave out what is too wide for the map's coarsest level");
@@ -109,6 +109,7 @@ void RenderOptions::finish_variant() {
     if (stages::hierarchical::levels_of(v) > 1 && settings.map_size % step != 0)
         throw std::runtime_error("--map-size: --variant " + variant + " needs a multiple of " + std::to_string(step) + ", got " + std::to_string(settings.map_size));
     if (settings.sprite_size > 0 && !stages::hierarchical::has_one_size(v)) throw std::runtime_error("--splat-size: --variant " + variant + " has splats of many sizes");
+    if (settings.sprite_size > 0 && settings.sprite_size < stages::hierarchical::narrowest) throw std::runtime_error("--splat-size: --technique hierarchical needs at least 2 texels");
     if (settings.discard_wide_splats && !stages::hierarchical::may_discard(v)) throw std::runtime_error("--discard-wide-splats: --variant " + variant + " has no splats that are too wide");
 }
 

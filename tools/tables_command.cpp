@@ -245,7 +245,7 @@ void add_tables_command(CLI::App& app) {
     c->add_option("--photons", a->photons, "Along an edge of the photon buffer")->check(CLI::Range(16, 4096))->delimiter(',')->capture_default_str();
     c->add_option("--rooms", a->rooms, "Table 5: these scenes instead of the bundled ones")->delimiter(',');
     c->add_option("--map-size", a->map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
-    c->add_option("--splat-threshold", a->splat_threshold, "From twice so many texels on a splat goes to a coarser level of the map")->check(CLI::Range(1.0, 64.0))->capture_default_str();
+    c->add_option("--splat-threshold", a->splat_threshold, "From twice so many texels on a splat goes to a coarser level of the map")->check(CLI::Range(2.0, 64.0))->capture_default_str();
     c->add_option("--runs", a->runs, "Table 3: times are those of the fastest of so many runs")->check(CLI::Range(1, 10000))->capture_default_str();
     c->add_option("--frames", a->frames, "Tables 4 and 5: of the animation")->check(CLI::Range(1, 10000))->capture_default_str();
     c->add_option("--threads", a->threads, "0: one per core")->check(CLI::Range(0, 1024))->capture_default_str();

@@ -372,4 +372,17 @@ TEST_CASE("a map whose levels are not halves of each other is refused") {
     CHECK(stages::Renderer(device, built.world, settings).faults().empty());
 }
 
+TEST_CASE("splats that are too narrow to have a sum are refused") {
+    Device device;
+    const BuiltWorld built = build_world(device, scenes::bundled_scene("glass-sphere"));
+    stages::Settings settings = hierarchical_settings(small(16, 12, 16, 64), Variant::Varying);
+    settings.splat_threshold = 1.9f;
+    CHECK_FALSE(stages::Renderer(device, built.world, settings).faults().empty());
+    settings = hierarchical_settings(small(16, 12, 16, 64), Variant::Gather);
+    settings.sprite_size = 1;
+    CHECK_FALSE(stages::Renderer(device, built.world, settings).faults().empty());
+    settings.sprite_size = 2;
+    CHECK(stages::Renderer(device, built.world, settings).faults().empty());
+}
+
 }  // namespace nephroid::test

@@ -363,7 +363,8 @@ TEST_CASE("numbers that are none, or too many") {
         {{"--technique", "hierarchical", "--splat-size", "3"}, "--splat-size: --variant varying has splats of many sizes"},
         {{"--technique", "hierarchical", "--variant", "gather", "--discard-wide-splats"}, "--discard-wide-splats: --variant gather has no splats that are too wide"},
         {{"--discard-wide-splats"}, "--discard-wide-splats: --technique mapping has no splats that are too wide"},
-        {{"--technique", "hierarchical", "--splat-threshold", "0"}, "--splat-threshold: '0' is not a number from 1 to 64"},
+        {{"--technique", "hierarchical", "--splat-threshold", "0"}, "--splat-threshold: '0' is not a number from 2 to 64"},
+        {{"--technique", "hierarchical", "--variant", "gather", "--splat-size", "1.5"}, "--splat-size: --technique hierarchical needs at least 2 texels"},
         {{"--splat-size", "nan"}, "--splat-size: 'nan' is not a number from 0 to 64"},
     };
     for (const Case& c : cases) {

@@ -187,7 +187,7 @@ TEST_CASE("glass and metal bodies are closed, right side out, and as large as th
     CHECK(bounds(wine).low.y > 0.0f);  // stands on the table
 }
 
-TEST_CASE("water is one sheet whose normals are its slope, and reaches into the walls") {
+TEST_CASE("water is one sheet whose normals are its slope, and reaches to the walls") {
     for (const std::string_view name : {"pool", "sphere-above-water"}) {
         const Scene scene = bundled_scene(name);
         const Mesh &water = mesh_named(scene, "water"), &basin = mesh_named(scene, "basin");
@@ -196,8 +196,8 @@ TEST_CASE("water is one sheet whose normals are its slope, and reaches into the 
         CHECK(material.kind() == SurfaceKind::Dielectric);
         CHECK(material.has_volume);
         CHECK(material.ior == 1.33f);
-        CHECK(bounds(water).low.x < bounds(basin).low.x);
-        CHECK(bounds(water).high.z > bounds(basin).high.z);
+        CHECK(bounds(water).low.x == bounds(basin).low.x);
+        CHECK(bounds(water).high.z == bounds(basin).high.z);
         CHECK(bounds(water).low.y > bounds(basin).low.y + 0.5f);
         CHECK(bounds(water).high.y < bounds(basin).high.y);
         // Central differences along both axes, in the sheet's inside.
@@ -257,8 +257,8 @@ TEST_CASE("the fog") {
 // changes them on purpose: a picture of a bundled scene can only have the same bits everywhere if its scene has.
 TEST_CASE("bundled scenes have the same bits everywhere") {
     const std::map<std::string_view, std::uint64_t> golden{
-        {"glass-sphere", 0x12d187ee0b2838aa}, {"mirror-ring", 0x600ca146703ea861},   {"pool", 0xea3144013b53e0be},
-        {"glass-torus", 0x8bad373fe99677c3},  {"sphere-in-fog", 0xdb7efe85230d5fa8}, {"sphere-above-water", 0x3ccdd2a7d607548d},
+        {"glass-sphere", 0x12d187ee0b2838aa}, {"mirror-ring", 0x600ca146703ea861},   {"pool", 0xe07174a982649cc0},
+        {"glass-torus", 0x8bad373fe99677c3},  {"sphere-in-fog", 0xdb7efe85230d5fa8}, {"sphere-above-water", 0xd7e1c73502b3e554},
         {"prism", 0x6819a4f113cec878},        {"wine-glass", 0x38551bc031a2a4b1},    {"closed-box", 0xdedafe3fc54825a4},
     };
     for (const std::string_view name : bundled_scene_names()) {

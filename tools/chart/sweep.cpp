@@ -70,7 +70,16 @@ constexpr Entry entries[] = {
     {Full, "hierarchical", "--technique hierarchical --photons 1024^2 --map-size 2048"},
     {Full, "hierarchical", "--technique hierarchical --photons 2048^2 --map-size 2048"},
     {Full, "hierarchical", "--technique hierarchical --photons 4096^2 --map-size 4096"},
-    // Its splats: all alike, those that converge as one, and widths by other rules.
+    // Light through the triangles themselves.
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 64^2 --map-size 128"},
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 128^2 --map-size 256"},
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 256^2 --map-size 512"},
+    {Full, "exact", "--technique hierarchical --tracing exact --photons 512^2 --map-size 1024"},
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 1024^2 --map-size 1024"},
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 256^2 --map-size 512 --samples 4"},
+    {Full, "exact", "--technique hierarchical --tracing exact --photons 2048^2 --map-size 2048 --samples 4"},
+    {Full, "exact", "--technique mapping --tracing exact --photons 256^2 --map-size 512"},
+    // Splats: all alike, those that converge as one, and widths by other rules.
     {Full, "splats of one size", "--technique hierarchical --variant gather --photons 256^2 --map-size 512"},
     {Default, "splats of one size", "--technique hierarchical --variant constant --photons 256^2 --map-size 512"},
     {Full, "splats of one size", "--technique hierarchical --variant hierarchical --photons 256^2 --map-size 256"},

@@ -312,6 +312,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         if (!(settings.splat_threshold >= hierarchical::narrowest)) faults.add("splat_threshold", "must be at least what the narrowest splat takes");
         if (settings.sprite_size != 0 && !(settings.sprite_size >= hierarchical::narrowest)) faults.add("sprite_size", "must be at least what the narrowest splat takes");
     }
+    if (exact() && settings.technique == Technique::Hierarchical && settings.hierarchical_variant == hierarchical::Variant::ThinLens) faults.add("tracing", "must be in image space: a thin lens is looked up in the object's layers");
     if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
 }
@@ -732,9 +733,9 @@ void Renderer::Impl::emission_pass() {
 void Renderer::Impl::direct_light(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     if (exact()) {
-        const View view = light.kind == LightKind::Directional ? parallel_view(light) : View();
+        const View view = light.kind == LightKind::Directional ? parallel_view(light) : make_view(light.position, light.direction);
         for (const PointPictures& p : points)
-            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced.view().hierarchy}, {direct.mip()}, blend_additive);
+            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced.view()}, {direct.mip()}, blend_additive);
         return;
     }
     ShadowMap shadows;

@@ -55,6 +55,12 @@ struct View {
         const F x = (u * F(2.0f) - F(1.0f)) * F(half.x) + F(centre.x), y = (F(1.0f) - v * F(2.0f)) * F(half.y) + F(centre.y);
         return broadcast<F>(origin) + broadcast<F>(right) * x + broadcast<F>(up) * y + broadcast<F>(forward) * (F(far_plane) - nearness * F(far_plane - near_plane));
     }
+    // Where the ray to a position begins: in the origin, or on the near plane.
+    template <class F>
+    vec3<F> beginning(const vec3<F>& to) const {
+        const vec3<F> o = broadcast<F>(origin), axis = broadcast<F>(forward);
+        return perspective ? o : to - axis * (glm::dot(to - o, axis) - F(near_plane));
+    }
     // The nearness that the plane through `point` with normal `n` has at a place.
     template <class F>
     F plane_nearness(const vec3<F>& point, const vec3<F>& n, F u, F v) const {

@@ -19,7 +19,6 @@ struct TraceExactPhotons {
     int mesh = 0;    // the object
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
     bool lie_open = false;  // no receiver hides any part of another from the light
-
     glm::vec3 middle{0.0f};  // of the object
 
     // Targets as TracePhotons', and positions once more, of photons that the light does not see and the object's middle does.
@@ -45,9 +44,10 @@ struct TraceExactPhotons {
             ray.ledger.clear(!ray.by_chance);
             ray.landed = ray.landed & ray.by_chance;
         }
-        const vec3<F> from = view.perspective ? broadcast<F>(view.origin) : ray.position - broadcast<F>(view.forward) * (glm::dot(ray.position - broadcast<F>(view.origin), broadcast<F>(view.forward)) - F(view.near_plane));
-        const LaneMask<F> shown = lie_open ? ray.landed & faces(ray, light.towards(ray.position)) : is_seen(ray, from, ray.landed);
-        const LaneMask<F> hidden = lie_open ? LaneMask<F>(false) : is_seen(ray, broadcast<F>(middle), ray.landed & !shown);
+        const LaneMask<F> open = ray.landed & !ray.unseen;
+        const auto seen_from = [&](const vec3<F>& place, LaneMask<F> asked) { return tracer.world.shows(place, ray.position, ray.normal, asked, TracedWorldView::Among::Receivers); };
+        const LaneMask<F> shown = lie_open ? open & (glm::dot(ray.normal, light.towards(ray.position)) > F(0.0f)) : seen_from(view.beginning(ray.position), open);
+        const LaneMask<F> hidden = lie_open ? LaneMask<F>(false) : seen_from(broadcast<F>(middle), open & !shown);
         ray.ledger.drop(ray.landed & !shown & !hidden, ray.ledger.missed);
         ray.landed = shown | hidden;
         // A parallel light's path has no beginning.
@@ -61,25 +61,6 @@ struct TraceExactPhotons {
         return {vec4<F>(ray.position, select(shown, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
                 vec4<F>(total(ray.ledger.started), total(ray.ledger.absorbed), total(ray.ledger.not_followed), total(ray.ledger.correction)),
                 vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f)), vec4<F>(ray.position, select(hidden, F(1.0f), F(0.0f)))};
-    }
-
-private:
-    // The side that was landed on is one that is seen, and looks that way.
-    template <class F>
-    static LaneMask<F> faces(const ExactTracer::Ray<F>& ray, const vec3<F>& towards) {
-        return (!ray.unseen) & (glm::dot(ray.normal, towards) > F(0.0f));
-    }
-    // Whether the landing place is seen from a place, specular objects aside.
-    template <class F>
-    LaneMask<F> is_seen(const ExactTracer::Ray<F>& ray, const vec3<F>& from, LaneMask<F> active) const {
-        const vec3<F> way = from - ray.position, towards = glm::normalize(way);
-        const LaneMask<F> seen = active & faces(ray, towards);
-        if (none(seen)) return seen;
-        const TriangleHierarchyView& hierarchy = tracer.world.hierarchy;
-        const F distance = hierarchy.nearest_receiver(from, -towards, seen).distance;
-        // The place is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
-        const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(ray.normal, towards);
-        return seen & (distance + slack >= glm::length(way));
     }
 };
 

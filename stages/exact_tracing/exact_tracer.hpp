@@ -41,7 +41,7 @@ struct ExactTracer {
     // where the others start is returned.
     template <class F>
     vec3<F> begin(Ray<F>& ray, std::int32_t mesh, LaneMask<F>& lit) const {
-        const TriangleHierarchyView::Hit<F> hit = world.hierarchy.nearest(ray.position, ray.direction, ray.active);
+        const TriangleHierarchyView::Hit<F> hit = world.hierarchy.nearest(ray.position, ray.direction, ray.active, TriangleHierarchyView::Start::Anywhere);
         const LaneInt<F> meshes = world.mesh(hit);
         lit = ray.active = ray.active & (meshes == LaneInt<F>(mesh));
         const vec3<F> position = world.position(hit);
@@ -62,7 +62,7 @@ struct ExactTracer {
     void follow(Ray<F>& ray, int event = 1) const {
         PathLedger<F>& ledger = ray.ledger;
         for (; any(ray.active); ++event) {
-            const TriangleHierarchyView::Hit<F> hit = light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active) : nearest_seen(ray.position, ray.direction, ray.active);
+            const TriangleHierarchyView::Hit<F> hit = light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active) : nearest_seen(ray.position, ray.direction, ray.active, event == 0 ? TriangleHierarchyView::Start::Anywhere : TriangleHierarchyView::Start::OffSurface);
             const LaneMask<F> found = ray.active & hit.found();
             ledger.drop(ray.active & !found, ledger.missed);
             if (!light) {
@@ -102,8 +102,8 @@ struct ExactTracer {
 private:
     // Past the sides of receivers that are not seen; the distance is from the beginning.
     template <class F>
-    TriangleHierarchyView::Hit<F> nearest_seen(vec3<F> origin, const vec3<F>& direction, LaneMask<F> active) const {
-        TriangleHierarchyView::Hit<F> nearest = world.hierarchy.nearest(origin, direction, active), hit = nearest;
+    TriangleHierarchyView::Hit<F> nearest_seen(vec3<F> origin, const vec3<F>& direction, LaneMask<F> active, TriangleHierarchyView::Start start) const {
+        TriangleHierarchyView::Hit<F> nearest = world.hierarchy.nearest(origin, direction, active, start), hit = nearest;
         F before(0.0f);
         for (LaneMask<F> looks = active;;) {
             const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), looks & hit.found());

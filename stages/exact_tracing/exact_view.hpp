@@ -77,27 +77,13 @@ private:
 struct ShadeDirectExactly {
     SurfacePoints points;
     LightSource light;
-    View view;  // of a directional light
-    TriangleHierarchyView hierarchy;
+    View view;  // from the light: where its rays begin
+    TracedWorldView world;
     template <class F>
     vec4<F> operator()(const PixelInput<F>& pixel) const {
-        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const vec4<F> p = points.positions.fetch<F>(x, y);
-        if (none(p.w > F(0.0f))) return vec4<F>(F(0.0f));
-        const vec3<F> position(p), n(points.normals.fetch<F>(x, y)), albedo(points.albedo.fetch<F>(x, y));
-        const vec3<F> irradiance = light.irradiance(position, n);
-        const LaneMask<F> faces = (p.w > F(0.0f)) & (irradiance.x + irradiance.y + irradiance.z > F(0.0f));
-        if (none(faces)) return vec4<F>(F(0.0f));
-        return select(faces & reaches(light, view, hierarchy, position, n, faces), lambert(albedo, irradiance), vec4<F>(F(0.0f)));
-    }
-
-    // The point is on its surface to within what rounding leaves, which a slanting ray has a longer way through.
-    template <class F>
-    static LaneMask<F> reaches(const LightSource& light, const View& view, const TriangleHierarchyView& hierarchy, const vec3<F>& position, const vec3<F>& n, LaneMask<F> active) {
-        const vec3<F> towards = light.towards(position), forward = broadcast<F>(view.forward);
-        const vec3<F> from = light.kind != LightKind::Directional ? broadcast<F>(light.position) : position - forward * (glm::dot(position - broadcast<F>(view.origin), forward) - F(view.near_plane));
-        const F slack = hierarchy.error_at(from) * F(4.0f) / glm::dot(n, towards);
-        return hierarchy.nearest(from, -towards, active).distance + slack >= glm::length(position - from);
+        return shade_direct(points, light, pixel, [&](const vec3<F>& position, const vec3<F>& n, F, LaneMask<F> faces) {
+            return select(world.shows(view.beginning(position), position, n, faces, TracedWorldView::Among::Everything), F(1.0f), F(0.0f));
+        });
     }
 };
 

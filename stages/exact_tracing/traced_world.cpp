@@ -63,7 +63,7 @@ glm::vec3 TracedWorld::attenuation_at(const glm::vec3& place) const {
         glm::vec3 way(0.0f);
         if (k < 6) way[k / 2] = k % 2 ? 1.0f : -1.0f;
         else way = glm::normalize(glm::vec3(k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f));
-        const TriangleHierarchyView::Hit<float> hit = world.hierarchy.nearest<float>(place, way, true);
+        const TriangleHierarchyView::Hit<float> hit = world.hierarchy.nearest<float>(place, way, true, TriangleHierarchyView::Start::Anywhere);
         if (!hit.found()) continue;
         const std::int32_t mesh = world.mesh(hit);
         if (optics_[mesh].transmits == 0 || optics_[mesh].thin_walled != 0) continue;

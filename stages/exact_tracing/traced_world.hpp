@@ -45,6 +45,26 @@ struct TracedWorldView {
     const TexturedMesh* textured = nullptr;
     std::int32_t textured_count = 0;
 
+    // Whether what is first seen from a place is the surface on which a point lies, with a normal on the side that is seen; of
+    // receivers alone, or of everything. The point is on its surface to within what rounding leaves, which a slanting ray has a
+    // longer way through. Next to an edge another wall may be as near: that faces another way.
+    enum class Among : bool { Everything, Receivers };
+    template <class F>
+    LaneMask<F> shows(const vec3<F>& from, const vec3<F>& point, const vec3<F>& normal, LaneMask<F> active, Among among) const {
+        constexpr float least = 1e-3f;  // a cosine; walls at right angles have a little for theirs
+        constexpr TriangleHierarchyView::Start anywhere = TriangleHierarchyView::Start::Anywhere;
+        const vec3<F> way = point - from, direction = glm::normalize(way);
+        const F faces = -glm::dot(normal, direction);
+        const LaneMask<F> asks = active & (faces > F(0.0f));
+        if (none(asks)) return asks;
+        const TriangleHierarchyView::Hit<F> hit = among == Among::Receivers ? hierarchy.nearest_receiver(from, direction, asks, anywhere) : hierarchy.nearest(from, direction, asks, anywhere);
+        const vec3<F> plane = normals.template load<F>(hit.triangle).triangle;
+        const F side = select(glm::dot(plane, direction) < F(0.0f), F(1.0f), F(-1.0f));
+        const LaneMask<F> same_way = glm::dot(plane, normal) * side > F(least);
+        const F slack = hierarchy.error_at(from) * F(4.0f) / faces;
+        return asks & ((!hit.found()) | (same_way & (hit.distance + slack >= glm::length(way))));
+    }
+
     // Where a triangle was met: on its plane, down to rounding, whatever the distance was.
     template <class F>
     vec3<F> position(const TriangleHierarchyView::Hit<F>& hit) const {

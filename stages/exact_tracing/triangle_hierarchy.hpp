@@ -66,24 +66,28 @@ struct TriangleHierarchyView {
         return most * F(tracing_error);
     }
 
+    // Where rays start: off a surface, on the side where they go on, or anywhere else, a lamp or an eye. That may lie in a
+    // triangle's plane, which its rays then never meet, whatever rounding makes of it.
+    enum class Start : bool { OffSurface, Anywhere };
+
     // The nearest triangle along a unit direction, in lanes that are active. Rays start at their origin, itself not counted.
     template <class F>
-    Hit<F> nearest(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
-        return search<false>(origin, direction, active);
+    Hit<F> nearest(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active, Start start = Start::OffSurface) const {
+        return search<false>(origin, direction, active, start);
     }
     // The nearest receiver that shows a side that is seen.
     template <class F>
-    Hit<F> nearest_receiver(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
-        return search<true>(origin, direction, active);
+    Hit<F> nearest_receiver(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active, Start start = Start::OffSurface) const {
+        return search<true>(origin, direction, active, start);
     }
 
 private:
     template <bool Receivers, class F>
-    [[gnu::noinline]] Hit<F> search(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active) const {
+    [[gnu::noinline]] Hit<F> search(const vec3<F>& origin, const vec3<F>& direction, LaneMask<F> active, Start start) const {
         Hit<F> hit{F(infinite), F(0.0f), F(0.0f), LaneInt<F>(-1)};
         if (empty || none(active)) return hit;
         hit.distance = select(active, hit.distance, F(-infinite));
-        Packet<F> packet(origin, direction, error_at(origin));
+        Packet<F> packet(origin, direction, error_at(origin), start);
         if (packet.agrees(active)) traverse<Receivers, true>(packet, hit);
         else if constexpr (lanes_of<F> > 1) traverse<Receivers, false>(packet, hit);
         hit.distance = select(active, hit.distance, F(infinite));
@@ -101,11 +105,13 @@ private:
         LaneMask<F> negative[3]; // signs of `inverse`
         LaneMask<F> along[3];    // the coordinate along which the direction is longest
         F shear_x, shear_y, shear_z;
+        F error;
+        bool anywhere;           // Start::Anywhere
         // Of a packet that agrees about them.
         int axis[3] = {0, 1, 2};  // x and y of the sheared space, and the longest
         int sign[3] = {0, 0, 0};  // 1: negative
 
-        Packet(const vec3<F>& from, const vec3<F>& direction, F error) : origin(from) {
+        Packet(const vec3<F>& from, const vec3<F>& direction, F bound, Start start) : origin(from), error(bound), anywhere(start == Start::Anywhere) {
             constexpr float least = 0x1p-60f;
             vec3<F> size;
             for (int k = 0; k < 3; ++k) {
@@ -222,6 +228,7 @@ private:
             const LaneMask<F> front = area * p.shear_z > zero;  // corners run counter-clockwise
             inside = inside & ((front & LaneMask<F>((t.receiver & HierarchyTriangle::front) != 0)) | ((!front) & LaneMask<F>((t.receiver & HierarchyTriangle::back) != 0)));
         }
+        if (p.anywhere) inside = inside & !lies_in_plane(p, t);
         if (none(inside)) return;
         const F scale = F(1.0f) / select(inside, area, F(1.0f)), second = v * scale, third = w * scale;
         const F met = ((u * scale) * z[0] + second * z[1] + third * z[2]) * p.shear_z;
@@ -239,6 +246,13 @@ private:
         nearest.second = select(closer, second, nearest.second);
         nearest.third = select(closer, third, nearest.third);
         nearest.triangle = select(closer, LaneInt<F>(index), nearest.triangle);
+    }
+    // To within what rounding may come to.
+    template <class F>
+    static LaneMask<F> lies_in_plane(const Packet<F>& p, const HierarchyTriangle& t) {
+        const glm::vec3 a(t.corner[0][0], t.corner[0][1], t.corner[0][2]), b(t.corner[1][0], t.corner[1][1], t.corner[1][2]), c(t.corner[2][0], t.corner[2][1], t.corner[2][2]);
+        const glm::vec3 normal = glm::cross(b - a, c - a), size = glm::abs(normal);
+        return abs(glm::dot(broadcast<F>(normal), broadcast<F>(a) - p.origin)) <= p.error * F(size.x + size.y + size.z);
     }
     template <class F>
     LaneMask<F> comes_before(std::uint32_t number, LaneInt<F> other) const {

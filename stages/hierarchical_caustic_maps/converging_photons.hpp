@@ -31,22 +31,28 @@ struct Combination {
     }
 };
 
-// The first level with its validity. Targets: MarkPhotons'; boxes; fluxes.
+// A texel of a level with its validity. `mark`: which children there are; `child`: one of them. Targets: MarkPhotons'; boxes;
+// fluxes.
+template <class F, class Mark, class Child>
+inline std::array<vec4<F>, 3> combine_children(const PixelInput<F>& pixel, const Mark& mark, const Child& child) {
+    const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
+    const LaneUint<F> bits = mark.template children<F>(x, y);
+    Combination<F> all;
+    for (int k = 0; k < 4; ++k) all.add(child(child_column<F>(x, k), child_row<F>(y, k)), (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
+    return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), all.node.box, vec4<F>(all.node.flux, F(0.0f))};
+}
+
+// The first level.
 struct CombinePhotons {
     MarkPhotons mark;
     Texture2DView<Format::RGBA32F> fluxes;
     template <class F>
     std::array<vec4<F>, 3> operator()(const PixelInput<F>& pixel) const {
-        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const LaneUint<F> bits = mark.children<F>(x, y);
-        Combination<F> all;
-        for (int k = 0; k < 4; ++k) {
-            const LaneInt<F> column = child_column<F>(x, k), row = child_row<F>(y, k);
+        return combine_children(pixel, mark, [&](LaneInt<F> column, LaneInt<F> row) -> Combined<F> {
             const vec3<F> position(mark.focus.positions.fetch<F>(column, row));
             const PhotonPlacement::Place<F> at = mark.focus.place(position);
-            all.add({vec4<F>(at.x, at.y, at.x, at.y), vec3<F>(fluxes.fetch<F>(column, row)) * mark.focus.share(position)}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
-        }
-        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), all.node.box, vec4<F>(all.node.flux, F(0.0f))};
+            return {vec4<F>(at.x, at.y, at.x, at.y), vec3<F>(fluxes.fetch<F>(column, row)) * mark.focus.share(position)};
+        });
     }
 };
 
@@ -56,14 +62,7 @@ struct CombineNodes {
     Texture2DView<Format::RGBA32F> boxes, fluxes;
     template <class F>
     std::array<vec4<F>, 3> operator()(const PixelInput<F>& pixel) const {
-        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const LaneUint<F> bits = mark.children<F>(x, y);
-        Combination<F> all;
-        for (int k = 0; k < 4; ++k) {
-            const LaneInt<F> column = child_column<F>(x, k), row = child_row<F>(y, k);
-            all.add({boxes.fetch<F>(column, row, mark.below), vec3<F>(fluxes.fetch<F>(column, row, mark.below))}, (bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u));
-        }
-        return {vec4<F>(bits_float(bits), F(0.0f), F(0.0f), F(0.0f)), all.node.box, vec4<F>(all.node.flux, F(0.0f))};
+        return combine_children(pixel, mark, [&](LaneInt<F> column, LaneInt<F> row) -> Combined<F> { return {boxes.fetch<F>(column, row, mark.below), vec3<F>(fluxes.fetch<F>(column, row, mark.below))}; });
     }
 };
 

@@ -35,22 +35,27 @@ inline vec4<F> lambert(const vec3<F>& albedo, const vec3<F>& irradiance) {
     return vec4<F>(albedo * irradiance * F(std::numbers::inv_pi_v<float>), F(0.0f));
 }
 
-// Direct light: radiance, W/(sr m^2).
+// Direct light: radiance, W/(sr m^2). `visible`: how much of the light a point has, of its place, normal and id, in lanes that
+// it would reach.
+template <class F, class Visible>
+inline vec4<F> shade_direct(const SurfacePoints& points, const LightSource& light, const PixelInput<F>& pixel, const Visible& visible) {
+    const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
+    const vec4<F> p = points.positions.fetch<F>(x, y);
+    if (none(p.w > F(0.0f))) return vec4<F>(F(0.0f));
+    const vec3<F> position(p), n(points.normals.fetch<F>(x, y)), albedo(points.albedo.fetch<F>(x, y));
+    const vec3<F> irradiance = light.irradiance(position, n);
+    const LaneMask<F> faces = (p.w > F(0.0f)) & (irradiance.x + irradiance.y + irradiance.z > F(0.0f));
+    if (none(faces)) return vec4<F>(F(0.0f));
+    return select(faces, lambert(albedo, irradiance * visible(position, n, p.w, faces)), vec4<F>(F(0.0f)));
+}
+
 struct ShadeDirect {
     SurfacePoints points;
     LightSource light;
     ShadowMap shadows;
     template <class F>
     vec4<F> operator()(const PixelInput<F>& pixel) const {
-        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const vec4<F> p = points.positions.fetch<F>(x, y);
-        if (none(p.w > F(0.0f))) return vec4<F>(F(0.0f));
-        const vec3<F> position(p), n(points.normals.fetch<F>(x, y)), albedo(points.albedo.fetch<F>(x, y));
-        const vec3<F> irradiance = light.irradiance(position, n);
-        const LaneMask<F> faces = (p.w > F(0.0f)) & (irradiance.x + irradiance.y + irradiance.z > F(0.0f));
-        if (none(faces)) return vec4<F>(F(0.0f));
-        const F visible = shadows.visibility(position, n, p.w);
-        return select(faces, lambert(albedo, irradiance * visible), vec4<F>(F(0.0f)));
+        return shade_direct(points, light, pixel, [&](const vec3<F>& position, const vec3<F>& n, F id, LaneMask<F>) { return shadows.visibility(position, n, id); });
     }
 };
 

@@ -259,6 +259,33 @@ TEST_CASE("what lands where the light does not see lies there, and not on what i
         for (int x = 22; x < 42; ++x) REQUIRE(r.at(r.caustic, x, y) == glm::vec3(0));
 }
 
+TEST_CASE("a lamp in a wall's plane lights both sides, whatever rounding makes of the plane") {
+    // A wall that stands on the picture's middle, in a plane through its lamp and the eye; the floor shows a / pi I cos / d^2.
+    Device device;
+    for (const float turn : {0.0f, 0.7f, 1.1f, 2.3f}) {
+        CAPTURE(turn);
+        const glm::vec3 along(std::cos(turn), 0, std::sin(turn)), across(-along.z, 0, along.x), lamp = along * 0.3f + glm::vec3(0, 1.1f, 0);
+        scenes::Scene scene = floor_scene();
+        add_sheet(scene, "wall", add_lambert(scene, glm::vec3(0.5f), true), -along, along, along + glm::vec3(0, 1.7f, 0), -along + glm::vec3(0, 1.7f, 0));
+        add_point_light(scene, lamp, glm::vec3(3));
+        const Rendered r = render(device, scene, exact(64, 48));
+        const double half = std::tan(0.45) * 4;
+        int compared = 0;
+        for (int y = 0; y < 48; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                const glm::dvec3 p(((x + 0.5) / 32 - 1) * half * 4 / 3, 0, ((y + 0.5) / 24 - 1) * half), d = glm::dvec3(lamp) - p;
+                if (std::abs(glm::dot(p, glm::dvec3(across))) < 0.1) continue;
+                const double squared = glm::dot(d, d);
+                CAPTURE(x);
+                CAPTURE(y);
+                REQUIRE(r.at(r.direct, x, y).x == doctest::Approx(0.7 / 3.14159265358979 * 3 * d.y / std::sqrt(squared) / squared).epsilon(1e-4).scale(0));
+                ++compared;
+            }
+        }
+        CHECK(compared > 2500);
+    }
+}
+
 TEST_CASE("every watt of every bundled scene is accounted for") {
     Device device;
     for (const std::string_view scene : scenes::bundled_scene_names()) {

@@ -67,12 +67,17 @@ TEST_CASE("a closed box with the light outside stays exactly 0") {
     scenes::Scene scene = scenes::bundled_scene("closed-box");
     for (const glm::vec3 position : {scene.lights[0].position, glm::vec3(2.31f, 3.7f, 1.93f), glm::vec3(-3, 0.4f, 2.2f), glm::vec3(0.1f, 4.5f, -0.2f)}) {
         scene.lights[0].position = position;
-        const Rendered r = render(device, scene, small(200, 150));
-        CAPTURE(position.x);
-        CAPTURE(position.y);
-        CAPTURE(position.z);
-        for (const float v : r.direct) REQUIRE(v == 0.0f);
-        for (const float v : r.caustic) REQUIRE(v == 0.0f);
+        for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+            stages::Settings settings = small(200, 150);
+            settings.tracing = tracing;
+            const Rendered r = render(device, scene, settings);
+            CAPTURE(tracing);
+            CAPTURE(position.x);
+            CAPTURE(position.y);
+            CAPTURE(position.z);
+            for (const float v : r.direct) REQUIRE(v == 0.0f);
+            for (const float v : r.caustic) REQUIRE(v == 0.0f);
+        }
     }
 }
 

@@ -365,6 +365,8 @@ TEST_CASE("numbers that are none, or too many") {
         {{"--discard-wide-splats"}, "--discard-wide-splats: --technique mapping has no splats that are too wide"},
         {{"--technique", "hierarchical", "--splat-threshold", "0"}, "--splat-threshold: '0' is not a number from 2 to 64"},
         {{"--technique", "hierarchical", "--variant", "gather", "--splat-size", "1.5"}, "--splat-size: --technique hierarchical needs at least 2 texels"},
+        {{"--technique", "hierarchical", "--variant", "thin-lens", "--tracing", "exact"}, "--tracing exact: does not go with --variant thin-lens"},
+        {{"--variant", "vertices", "--tracing", "exact"}, "--tracing exact: does not go with --variant vertices"},
         {{"--splat-size", "nan"}, "--splat-size: 'nan' is not a number from 0 to 64"},
     };
     for (const Case& c : cases) {

@@ -46,14 +46,16 @@ struct TracedWorldView {
     std::int32_t textured_count = 0;
 
     // Whether what is first seen from a place is the surface on which a point lies, with a normal on the side that is seen; of
-    // receivers alone, or of everything. The point is on its surface to within what rounding leaves, which a slanting ray has a
-    // longer way through. Next to an edge another wall may be as near: that faces another way.
+    // receivers alone, or of everything. The point is on its surface to within what rounding leaves; the ray goes to a place that
+    // is off the surface by more, and meets it not far behind, further for a slanting ray. So what else ends at an edge of the
+    // surface stands before it or not as it does beside the edge; what is as near faces another way.
     enum class Among : bool { Everything, Receivers };
     template <class F>
     LaneMask<F> shows(const vec3<F>& from, const vec3<F>& point, const vec3<F>& normal, LaneMask<F> active, Among among) const {
         constexpr float least = 1e-3f;  // a cosine; walls at right angles have a little for theirs
         constexpr TriangleHierarchyView::Start anywhere = TriangleHierarchyView::Start::Anywhere;
-        const vec3<F> way = point - from, direction = glm::normalize(way);
+        const F error = hierarchy.error_at(from);
+        const vec3<F> way = point + normal * (F(2.0f) * error) - from, direction = glm::normalize(way);
         const F faces = -glm::dot(normal, direction);
         const LaneMask<F> asks = active & (faces > F(0.0f));
         if (none(asks)) return asks;
@@ -61,8 +63,8 @@ struct TracedWorldView {
         const vec3<F> plane = normals.template load<F>(hit.triangle).triangle;
         const F side = select(glm::dot(plane, direction) < F(0.0f), F(1.0f), F(-1.0f));
         const LaneMask<F> same_way = glm::dot(plane, normal) * side > F(least);
-        const F slack = hierarchy.error_at(from) * F(4.0f) / faces;
-        return asks & ((!hit.found()) | (same_way & (hit.distance + slack >= glm::length(way))));
+        const F slack = F(4.0f) * error / faces;
+        return asks & hit.found() & same_way & (abs(hit.distance - glm::length(way)) <= slack);
     }
 
     // Where a triangle was met: on its plane, down to rounding, whatever the distance was.

@@ -79,6 +79,11 @@ TEST_CASE("a closed box with the light outside stays exactly 0") {
             for (const float v : r.caustic) REQUIRE(v == 0.0f);
         }
     }
+    // A sample on the edge between floor and wall, which the sun sees from outside.
+    stages::Settings fine = small(512, 384, 64, 64);
+    fine.tracing = stages::Tracing::Exact;
+    const Rendered r = render(device, scenes::bundled_scene("closed-box"), fine);
+    for (const float v : r.direct) REQUIRE(v == 0.0f);
 }
 
 TEST_CASE("the energy audit closes for every bundled scene, and every term is needed") {

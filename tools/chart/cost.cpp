@@ -9,25 +9,27 @@ namespace nephroid::chart {
 
 namespace {
 
-constexpr const char* work_names[works] = {"cube maps", "views", "photons", "exact photons", "splats", "map texels", "seen through", "shading"};
-constexpr const char* count_names[counts] = {"texel", "vertex", "primitive", "fragment", "blended fragment", "photon that landed", "step"};
+constexpr const char* work_names[works] = {"cube maps", "views", "photons", "exact photons", "splats", "map texels", "seen through", "seen exactly", "shading", "exact shadows"};
+constexpr const char* count_names[counts] = {"texel", "vertex", "primitive", "fragment", "blended fragment", "photon that landed", "pass", "step"};
 
 // ns, [Work][Count].
 constexpr double weights_ns[works][counts] = {
-    {0.86, 0, 54, 10, 0, 0, 0},      // cube maps; off by 37 %
-    {0, 18, 8, 32, 0, 0, 0},         // views; off by 17 %
-    {31, 0, 0, 0, 0, 330, 20},       // photons; off by 30 %
-    {100, 0, 0, 0, 0, 60, 0},        // exact photons; off by 30 %, of processor time
-    {8.5, 4.6, 45, 3.5, 0, 0, 0},    // splats; off by 17 %
-    {0, 0, 0, 15, 0, 0, 0},          // map texels; off by 29 %
-    {23, 0, 0, 0, 270, 0, 0},        // seen through; off by 33 %
-    {3.5, 0, 0, 0, 10, 0, 0},        // shading; off by 18 %
+    {0.68, 160, 470, 6.5, 0, 0, 12.6e3, 0},  // cube maps; off by 11 %
+    {6.6, 32, 11, 7.4, 0, 0, 0, 0},          // views; off by 22 %
+    {7.3, 0, 0, 5.6, 0, 410, 71e3, 25},      // photons; off by 29 %
+    {19, 0, 0, 0, 0, 190, 84e3, 0},          // exact photons; off by 48 %
+    {1.4, 16, 24, 3.6, 0, 0, 14.5e3, 0},     // splats; off by 6 %
+    {0, 0, 0, 12, 0, 0, 6e3, 0},             // map texels; off by 20 %
+    {16, 0, 0, 0, 270, 0, 570e3, 0},         // seen through; off by 22 %
+    {0, 0, 0, 0, 250, 0, 50e3, 0},           // seen exactly; off by 40 %
+    {5.9, 0, 0, 0, 5.1, 0, 150e3, 0},        // shading; off by 30 %
+    {27, 0, 0, 0, 0, 0, 20e3, 0},            // exact shadows; off by 43 %
 };
-
 Work photons_of(const stages::Settings& settings) { return settings.tracing == stages::Tracing::Exact ? Work::ExactPhotons : Work::Photons; }
 
 Work work_of(stages::PassKind kind, const stages::Settings& settings) {
     using enum stages::PassKind;
+    const bool exact = settings.tracing == stages::Tracing::Exact;
     switch (kind) {
         case Photons:
         case FitCausticView: return photons_of(settings);
@@ -36,10 +38,10 @@ Work work_of(stages::PassKind kind, const stages::Settings& settings) {
         case ValidityPyramid:
         case HiddenCaustic:
         case ResolveCaustic: return Work::MapTexels;
-        case TraceSeen: return Work::SeenThrough;
+        case TraceSeen: return exact ? Work::SeenExactly : Work::SeenThrough;
+        case DirectLight: return exact ? Work::ExactShadows : Work::Shading;
         case Surroundings:
         case Emission:
-        case DirectLight:
         case CausticLight:
         case Downsample: return Work::Shading;
         case SurfacePoints:
@@ -124,9 +126,14 @@ Amounts amounts_of(const std::vector<RenderedPass>& passes, const stages::Settin
     for (const RenderedPass& pass : passes) {
         const PipelineStatistics& s = pass.record.statistics;
         const Work work = work_of(pass.kind, settings);
+        if (s.vs_invocations == 0 && pass.kind != stages::PassKind::FitCausticView) continue;
+        add(work, Count::Passes, 1);
         add(work, Count::Texels, texels_of(pass, settings));
-        add(work, Count::Vertices, static_cast<double>(s.vs_invocations));
-        add(work, Count::Primitives, static_cast<double>(s.c_primitives));
+        // Other passes draw a triangle over their targets.
+        if (work == Work::CubeGeometry || work == Work::ViewGeometry || work == Work::Splats) {
+            add(work, Count::Vertices, static_cast<double>(s.vs_invocations));
+            add(work, Count::Primitives, static_cast<double>(s.c_primitives));
+        }
         add(work, Count::Fragments, static_cast<double>(s.ps_invocations));
         add(work, Count::BlendedFragments, static_cast<double>(s.blended_fragments));
         // The photons that a shader followed are those that are splatted.

@@ -1,7 +1,7 @@
 // A price that is the same on every machine: a weighted sum of the pipeline's statistics.
 //
 // The weights are nanoseconds of one thread, 16 lanes wide, of one machine, fitted once, by `nephroid chart --fit-cost --threads 1`, to
-// the times of the passes of the bundled scenes. On another machine the sum is not the time, but as good a measure of the work.
+// the times of the passes of the bundled scenes, small and large. On another machine the sum is not the time, but as good a measure of the work.
 #pragma once
 #include <array>
 #include <string>
@@ -13,8 +13,8 @@ namespace nephroid::chart {
 
 // Passes that do work of one kind: an invocation of a shader that follows a photon through glass is dearer than one that adds
 // a picture to another.
-enum class Work { CubeGeometry, ViewGeometry, Photons, ExactPhotons, Splats, MapTexels, SeenThrough, Shading };
-inline constexpr int works = 8;
+enum class Work { CubeGeometry, ViewGeometry, Photons, ExactPhotons, Splats, MapTexels, SeenThrough, SeenExactly, Shading, ExactShadows };
+inline constexpr int works = 10;
 
 // What is counted of a kind of work.
 enum class Count {
@@ -24,9 +24,10 @@ enum class Count {
     Fragments,      // ps_invocations
     BlendedFragments,
     Followed,       // photons that landed after more than one surface: points that were splatted (c_primitives)
+    Passes,         // that drew anything: what it takes to start
     Steps,          // of the search for where they land, at most: photons that landed, times iterations
 };
-inline constexpr int counts = 7;
+inline constexpr int counts = 8;
 
 using Amounts = std::array<std::array<double, counts>, works>;
 

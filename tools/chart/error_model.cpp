@@ -278,6 +278,8 @@ double Expectation::at(double change_deviations, double floor_deviations) const 
 }
 
 Choice choose_for_error(const std::vector<Expectation>& expected, double error, double probe_cost) {
+    // Times the cheapest that meets; less than 2, since costs are off, too.
+    constexpr double bearable = 1.6;
     std::vector<double> worth(expected.size());
     double worth_of_refusing = 0;
     // All steps are taken to be off by the same number of standard deviations.
@@ -292,7 +294,7 @@ Choice choose_for_error(const std::vector<Expectation>& expected, double error, 
             }
             if (!std::isfinite(cheapest)) worth_of_refusing += weight;
             for (std::size_t k = 0; k < expected.size(); ++k)
-                if (meets[k]) worth[k] += weight * std::min(1.0, squared(2 * cheapest / (expected[k].cost + probe_cost)));
+                if (meets[k]) worth[k] += weight * std::min(1.0, squared(bearable * cheapest / (expected[k].cost + probe_cost)));
         }
     }
     const auto best = std::max_element(worth.begin(), worth.end());

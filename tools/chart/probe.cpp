@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stages/mapping/splat_pass.hpp"
 #include "tools/picture_difference.hpp"
 #include "tools/throw_faults.hpp"
 
@@ -69,6 +70,12 @@ PictureData moved(const PictureData& picture, int x_by, int y_by) {
 
 double squared(double v) { return v * v; }
 
+// Of the widest splat's edge, anywhere in a map.
+double within_map(int map_size) {
+    constexpr double widest = stages::mapping::PlacePhoton::widest;
+    return 1 - widest / (4 * std::max<double>(map_size, widest));
+}
+
 }  // namespace
 
 Probe probe(Device& device, const stages::World& world, std::shared_ptr<stages::TracedWorld> traced, const scenes::Scene& scene, int width, int height) {
@@ -113,9 +120,11 @@ double expected_cost(const Probe& probe, const stages::Settings& s) {
             case TraversePhotons: passes.push_back(scaled(pass, photons)); break;
             case FitCausticView: passes.push_back(pass); break;
             case SplatPhotons: {
-                // Some splats are as wide as photons are apart, others as wide as they may be; three texels at least.
+                // Some splats are as wide as photons are apart, others as wide as they may be; three texels at least. Of the
+                // widest more lies within a larger map.
                 const double each = counted.c_primitives ? static_cast<double>(counted.ps_invocations) / static_cast<double>(counted.c_primitives) : 0;
-                const double wider = each > 0 ? std::max(9.0, each * std::sqrt(texels / photons)) / each : 0;
+                const double within = squared(within_map(s.map_size) / within_map(from.map_size));
+                const double wider = each > 0 ? std::max(9.0, each * std::sqrt(texels / photons) * within) / each : 0;
                 passes.push_back(scaled(pass, photons * wider, photons));
                 break;
             }

@@ -23,6 +23,10 @@ bool all_levels() {
     return level && std::strcmp(level, "all") == 0;
 }
 
+stages::Settings keeping_photons(stages::Settings s) {
+    s.keep_photons = true;
+    return s;
+}
 stages::Settings hierarchical_settings(stages::Settings s, Variant variant) {
     s.technique = stages::Technique::Hierarchical;
     s.hierarchical_variant = variant;
@@ -37,7 +41,7 @@ struct PhotonBuffer {
     stages::Light light;
     float reach;
 
-    PhotonBuffer(Device& device, const char* scene, int photons, int map = 0) : rendered(render(device, scenes::bundled_scene(scene), small(16, 12, photons, 64))) {
+    PhotonBuffer(Device& device, const char* scene, int photons, int map = 0) : rendered(render(device, scenes::bundled_scene(scene), keeping_photons(small(16, 12, photons, 64)))) {
         const stages::World& world = rendered.built.world;
         positions = &rendered.renderer->photon_positions(map);
         fluxes = &rendered.renderer->photon_fluxes(map);

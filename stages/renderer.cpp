@@ -386,14 +386,14 @@ bool Renderer::Impl::exceeds_view(const Light& light, const Mesh& mesh) const {
 }
 
 ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
-    ReceiverMap map;
-    map.cube = light.kind != LightKind::Directional;
-    if (map.cube) map.faces = cube_views(light.position);
-    else map.parallel = parallel_view(light);
-    map.depth = receiver_depth;
-    map.ids = receiver_ids;
-    map.size = settings.receiver_map_size;
-    return map;
+    ReceiverMap receivers;
+    receivers.cube = light.kind != LightKind::Directional;
+    if (receivers.cube) receivers.faces = cube_views(light.position);
+    else receivers.parallel = parallel_view(light);
+    receivers.depth = receiver_depth;
+    receivers.ids = receiver_ids;
+    receivers.size = settings.receiver_map_size;
+    return receivers;
 }
 
 SolidLayers Renderer::Impl::solid(const View& view, int m, const LayerPictures& from) const {

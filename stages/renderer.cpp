@@ -278,9 +278,9 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
             lit_layer = LayerPictures(n, n, 1);
             occluders = target(Format::D32F, n, n, "occluders");
         }
-        // A photon's accounts are added up as soon as it has been followed.
+        // A band's accounts are added up as soon as its photons have been followed. Vertices are all followed in one draw.
         constexpr int photons_per_band = 1 << 20;
-        const int rows = std::min(n, photons_per_band / n);
+        const int rows = settings.variant == mapping::Variant::Vertices ? n : std::min(n, photons_per_band / n);
         accounts = target(Format::RGBA32F, n, rows, "accounts");
         losses = target(Format::RGBA32F, n, rows, "losses");
         const int levels = map_levels();
@@ -500,9 +500,7 @@ void Renderer::Impl::trace_photons(const Pass& pass, int first_row, const std::a
         const Mesh& mesh = world.meshes[pass.mesh];
         PipelineState s = screen_state("vertex photons");
         s.topology = Topology::PointList;
-        const int rows = accounts.height();
-        const std::int64_t first = std::min(std::int64_t{first_row} * settings.photons, mesh.vertices.size()), count = std::min(std::int64_t{rows} * settings.photons, mesh.vertices.size() - first);
-        draw(Program{mapping::TraceVertexPhotons{photons, vertex_areas[pass.mesh], log2_of(settings.photons), rows}, mapping::StoreTracedPhoton{}}, s, {.vertices = mesh.vertices, .first = first, .count = count, .render_targets = targets});
+        draw(Program{mapping::TraceVertexPhotons{photons, vertex_areas[pass.mesh], log2_of(settings.photons)}, mapping::StoreTracedPhoton{}}, s, {.vertices = mesh.vertices, .render_targets = targets});
     } else {
         draw_screen("photons", photons, targets);
     }

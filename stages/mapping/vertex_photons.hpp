@@ -23,11 +23,9 @@ struct TraceVertexPhotons {
     TracePhotons photons;
     StructuredView<VertexArea> areas;
     int log2_side;  // of the photon buffer
-    int rows;       // of its band that is drawn, from photons.first_row on; its vertices are those that the draw is given
 
     template <class F>
     TracedPhoton<F> operator()(const WorldVertex<F>& v, const VertexIds<F>& ids) const {
-        const LaneInt<F> k = as_int(ids.vertex_id) + LaneInt<F>(photons.first_row << log2_side);
         const SolidLayers& solid = photons.lit_side;
         const View::Place<F> p = solid.view.place(v.position);
         // Lit if it is what the light's view shows there, to within a texel's slope.
@@ -36,16 +34,16 @@ struct TraceVertexPhotons {
         const vec3<F> to_vertex = v.position - broadcast<F>(photons.light.position);
         const bool directional = photons.light.kind == LightKind::Directional;
         const vec3<F> direction = directional ? broadcast<F>(photons.light.direction) : glm::normalize(to_vertex);
-        const vec3<F> area = areas.load<F>(k).area;
+        const vec3<F> area = areas.load<F>(as_int(ids.vertex_id)).area;
         const F across = -glm::dot(area, direction);
         const LaneMask<F> lit = ((p.z > F(0.0f)) | LaneMask<F>(!solid.view.perspective)) & (front > F(0.0f)) & (p.nearness >= front - tolerance) & (p.nearness > photons.occluders.fetch<F>(x, y).x) & (across > F(0.0f));
         // The vertex's share of the light: irradiance across times area, or intensity times solid angle.
         const F measure = directional ? across : across / glm::dot(to_vertex, to_vertex);
-        const std::array<vec4<F>, 4> r = photons.trace(v.position, direction, photons.light.emission(v.position) * measure, v.normal, glm::normalize(area), as_uint(k), lit);
+        const std::array<vec4<F>, 4> r = photons.trace(v.position, direction, photons.light.emission(v.position) * measure, v.normal, glm::normalize(area), ids.vertex_id, lit);
 
-        const LaneInt<F> column = k & LaneInt<F>((1 << log2_side) - 1), row = (k >> log2_side) - LaneInt<F>(photons.first_row);
-        const F to_right(2.0f / static_cast<float>(1 << log2_side)), down(2.0f / static_cast<float>(rows));
-        const vec4<F> texel((to_float(column) + F(0.5f)) * to_right - F(1.0f), F(1.0f) - (to_float(row) + F(0.5f)) * down, F(0.5f), F(1.0f));
+        const LaneInt<F> k = as_int(ids.vertex_id), column = k & LaneInt<F>((1 << log2_side) - 1), row = k >> log2_side;
+        const F scale(2.0f / static_cast<float>(1 << log2_side));
+        const vec4<F> texel((to_float(column) + F(0.5f)) * scale - F(1.0f), F(1.0f) - (to_float(row) + F(0.5f)) * scale, F(0.5f), F(1.0f));
         return {texel, r[0], r[1], r[2], r[3]};
     }
 };

@@ -280,6 +280,33 @@ TEST_CASE("photons that converge are combined") {
     CHECK(covered == each.photons);
 }
 
+TEST_CASE("a room with two lamps and a refractor of hundreds of thousands of triangles: accounts close, threads change nothing, both lamps shine through it") {
+    const scenes::Scene scene = scenes::bundled_scene("refractor-room");
+    for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+        CAPTURE(static_cast<int>(tracing));
+        stages::Settings settings = hierarchical_settings(small(48, 36, 128, 128), Variant::Varying);
+        settings.tracing = tracing;
+        Device one({.threads = 1}), two({.threads = 2});
+        const Rendered r = render(one, scene, settings), again = render(two, scene, settings);
+        CHECK(r.renderer->plan().maps.size() == 6);
+        CHECK(r.renderer->audit().imbalance() <= 1e-4);
+        CHECK(r.renderer->audit().deposited > 0.7 * r.renderer->audit().emitted);
+        CHECK(r.direct == again.direct);
+        CHECK(r.caustic == again.caustic);
+        CHECK(r.emission == again.emission);
+        double all = 0;
+        for (const int off : {0, 1}) {
+            scenes::Scene dark = scene;
+            dark.lights[static_cast<std::size_t>(off)].intensity = glm::vec3(0);
+            const Rendered alone = render(two, dark, settings);
+            const double lit = alone.sum(alone.caustic).y;
+            CHECK(lit > 0.25 * r.sum(r.caustic).y);
+            all += lit;
+        }
+        CHECK(all == doctest::Approx(r.sum(r.caustic).y).epsilon(0.05).scale(0));
+    }
+}
+
 TEST_CASE("levels save texels: one photon to four texels' edge") {
     Device device;
     for (const int side : all_levels() ? std::vector<int>{64, 256} : std::vector<int>{64}) {

@@ -44,7 +44,7 @@ bool HostMemory::allocate(std::size_t bytes) {
 
 bool HostMemory::allocate_zeroed(std::size_t bytes) {
 #if defined(__linux__)
-    if (bytes >= 2 * huge_page && bytes <= SIZE_MAX - 2 * huge_page) {
+    if (bytes >= huge_page && bytes <= SIZE_MAX - 2 * huge_page) {
         release();
         // One huge page more than needed, so that the block can start at one; what lies before goes back.
         const std::size_t rounded = (bytes + huge_page - 1) / huge_page * huge_page;

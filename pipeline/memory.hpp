@@ -6,7 +6,7 @@
 
 namespace nephroid {
 
-// At least 64-byte aligned. Zeroed blocks from 4 MiB on are aligned to huge pages, and the system is asked to use them, since
+// At least 64-byte aligned. Zeroed blocks from 2 MiB on are aligned to huge pages, and the system is asked to use them, since
 // a picture's rows lie pages apart; the others hold more room than most draws need, and take memory page by page as they
 // are used. `allocate` frees what was held before.
 class HostMemory {

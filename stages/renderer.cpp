@@ -115,7 +115,7 @@ struct Renderer::Impl : PassDraws {
     LayerPictures caster_layers, lit_layer;
     SolidLayers caster, lit_side;
     Texture occluders;
-    TracedWorld traced;
+    std::shared_ptr<TracedWorld> traced;  // of exact tracing
     // Of the caustic map at hand, with all that it takes: receivers are lit by it before the next one's photons are followed.
     std::vector<Texture> photon_positions, photon_fluxes;  // of one map, or of every one (Settings::keep_photons)
     Texture accounts, losses;  // of a band of rows of the photons
@@ -128,7 +128,7 @@ struct Renderer::Impl : PassDraws {
     CausticViewFitter fitter;
     std::vector<glm::dvec4> row_sums;
 
-    Impl(Device& d, const World& w, const Settings& s);
+    Impl(Device& d, const World& w, const Settings& s, std::shared_ptr<TracedWorld> shared);
 
     void measure_vertices();
 
@@ -233,7 +233,7 @@ struct Renderer::Impl : PassDraws {
     int wide_layers(const Light& light) const { return light.kind == LightKind::Directional ? 1 : 6; }
 };
 
-Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
+Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_ptr<TracedWorld> shared)
     : PassDraws(d), world(w), settings(s), plan(make_full_plan(w, s)), records(plan.passes.size()), width(s.width * s.samples_side), height(s.height * s.samples_side) {
     const bool any_specular = std::any_of(world.meshes.begin(), world.meshes.end(), [&](const Mesh& m) { return world.material_of(m).kind != SurfaceKind::Lambert; });
     reach = std::max(glm::length(world.high - world.low), 1e-6f);
@@ -255,7 +255,11 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s)
         small_emission = target(Format::RGBA32F, settings.width, settings.height, "emission");
     }
     if (exact()) {
-        faults.add(traced.build(device.executor(), world));
+        traced = std::move(shared);
+        if (!traced) {
+            traced = std::make_shared<TracedWorld>();
+            faults.add(traced->build(device.executor(), world));
+        }
     } else {
         shadow_depth = layered(Format::D32F, settings.shadow_map_size, 6, "shadow map");
         shadow_ids = layered(Format::R32F, settings.shadow_map_size, 6, "shadow map ids");
@@ -510,7 +514,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, int first_row, cons
     const Light& light = world.lights[pass.light];
     const CausticMapPlan& how = plan.maps[pass.map];
     TraceExactPhotons photons;
-    photons.tracer.world = traced.view();
+    photons.tracer.world = traced->view();
     photons.tracer.bounces = settings.bounces;
     photons.tracer.branch = pass.branch;
     if (settings.inner_reflections) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
@@ -647,7 +651,7 @@ void Renderer::Impl::hidden_caustic(const Pass& pass) {
 
 void Renderer::Impl::surface_points() {
     const View view = eye();
-    const glm::vec3 attenuation = exact() ? traced.attenuation_at(view.origin) : glm::vec3(0.0f);
+    const glm::vec3 attenuation = exact() ? traced->attenuation_at(view.origin) : glm::vec3(0.0f);
     clear(eye_depth.mip());
     for (PointPictures& p : points)
         if (!p.positions.empty()) clear(p.positions.mip());
@@ -703,7 +707,7 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
 
 void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     TraceSeenExactly trace;
-    trace.tracer.world = traced.view();
+    trace.tracer.world = traced->view();
     trace.tracer.bounces = settings.bounces;
     trace.tracer.branch = pass.branch;
     trace.tracer.light = false;
@@ -738,7 +742,7 @@ void Renderer::Impl::direct_light(const Pass& pass) {
     if (exact()) {
         const View view = light.kind == LightKind::Directional ? parallel_view(light) : make_view(light.position, light.direction);
         for (const PointPictures& p : points)
-            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced.view()}, {direct.mip()}, blend_additive);
+            if (!p.positions.empty()) draw_screen("direct light", ShadeDirectExactly{p.view(), LightSource(light), view, traced->view()}, {direct.mip()}, blend_additive);
         return;
     }
     ShadowMap shadows;
@@ -816,9 +820,9 @@ void Renderer::Impl::run(const Pass& pass) {
 
 // ---- the renderer
 
-Renderer::Renderer(Device& device, const World& world, const Settings& settings) {
+Renderer::Renderer(Device& device, const World& world, const Settings& settings, std::shared_ptr<TracedWorld> traced) {
     const FpEnvironment fp;
-    impl_ = std::make_unique<Impl>(device, world, settings);
+    impl_ = std::make_unique<Impl>(device, world, settings, std::move(traced));
 }
 Renderer::~Renderer() = default;
 
@@ -840,7 +844,7 @@ void Renderer::listen(ProgressListener* listener) { impl_->listener = listener; 
 void Renderer::vertices_moved() {
     const FpEnvironment fp;
     impl_->measure_vertices();
-    impl_->traced.refit(impl_->device.executor(), impl_->world);
+    if (impl_->traced) impl_->traced->refit(impl_->device.executor(), impl_->world);
 }
 
 Picture Renderer::picture() const {

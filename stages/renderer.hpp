@@ -15,6 +15,8 @@
 
 namespace nephroid::stages {
 
+class TracedWorld;  // exact_tracing/traced_world.hpp
+
 // A light's picture of an object holds no more than lies within this tangent of its axis: of an object round the light, a part.
 inline constexpr float widest_caster_view = 4.0f;
 
@@ -41,8 +43,9 @@ protected:
 
 class Renderer {
 public:
-    // The world and the device must outlive the renderer. faults() says what did not work out.
-    Renderer(Device& device, const World& world, const Settings& settings);
+    // The world and the device must outlive the renderer. faults() says what did not work out. With exact tracing, renderers of
+    // one world may share what is traced; null: one of its own.
+    Renderer(Device& device, const World& world, const Settings& settings, std::shared_ptr<TracedWorld> traced = nullptr);
     ~Renderer();
 
     const Faults& faults() const;
@@ -51,6 +54,7 @@ public:
     // Renders the world as it is now: lights and camera may have moved; vertices too, if that was said.
     [[nodiscard]] Faults render();
     // Vertices have moved, as far as the world's bounds: their positions, normals, triangles' facts and meshes' bounds are new.
+    // What is traced is fitted to them, for all renderers that share it.
     void vertices_moved();
 
     Picture picture() const;

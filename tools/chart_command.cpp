@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "scenes/load.hpp"
+#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/chart_page.hpp"
 #include "tools/chart/cost.hpp"
 #include "tools/chart/drawing.hpp"
@@ -148,8 +149,10 @@ void make_model(const ChartArguments& a) {
         for (const std::string& options : chart::ladder()) steps.push_back(chart::options_of({"", options}, a.size));
         const stages::Settings& size = steps.front().settings;
         const chart::Truth truth = chart::truth_of(view.name, scene, size.width, size.height, a.truth, {});
-        const chart::Probe probe = chart::probe(device, renderer.world(), scene, size.width, size.height);
-        chart::ModelRow row{view.scene, view.name, probe.change, probe.caustic_share, probe.facets, probe.crossing, probe.medium, probe.dispersion, probe.cost, {}, {}, {}};
+        const auto traced = std::make_shared<stages::TracedWorld>();
+        throw_faults(traced->build(device.executor(), renderer.world()));
+        const chart::Probe probe = chart::probe(device, renderer.world(), traced, scene, size.width, size.height);
+        chart::ModelRow row{view.scene, view.name, probe.change, probe.detail, probe.caustic_share, probe.medium, probe.dispersion, probe.cost, {}, {}, {}};
         for (const RenderOptions& step : steps) {
             const SceneRendering r = renderer.render(step.settings);
             const double error = chart::difference_from(truth, r.picture, executor).relmse, noise = std::isnan(truth.noise) ? 0 : truth.noise;
@@ -157,7 +160,7 @@ void make_model(const ChartArguments& a) {
             row.costs.push_back(chart::cost_of(chart::amounts_of(r.passes, step.settings)));
             row.expected_costs.push_back(chart::expected_cost(probe, step.settings));
         }
-        std::printf("%-22s change %-8.3g caustic %-6.3g facets %-6.2g%s%s%s noise %.1g: relMSE", view.name.c_str(), row.change, row.caustic_share, row.facets, row.crossing ? " crossing" : "", row.medium ? " medium" : "",
+        std::printf("%-22s change %-8.3g detail %-8.3g caustic %-6.3g%s%s noise %.1g: relMSE", view.name.c_str(), row.change, row.detail, row.caustic_share, row.medium ? " medium" : "",
                     row.dispersion ? " dispersion" : "", truth.noise);
         for (const double e : row.errors) std::printf(" %.3g", e);
         std::printf("; cost");

@@ -11,7 +11,7 @@ namespace nephroid {
 struct FrameTimes {
     double load_ms = 0;    // file to world
     double probe_ms = 0;    // to pick settings; part of the first frame's render_ms
-    double prepare_ms = 0;  // memory for the pictures; part of the first frame's render_ms
+    double prepare_ms = 0;  // memory for the pictures, and what is traced; part of the first frame's render_ms
     std::vector<double> render_ms;  // per run, from the loaded world to finished pixels in memory
     double write_ms = 0;
 };

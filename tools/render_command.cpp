@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "pipeline/math.hpp"
+#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/auto_settings.hpp"
 #include "tools/commands.hpp"
 #include "tools/debug_pixel.hpp"
@@ -123,16 +124,22 @@ void run(RenderArguments& a) {
     const stages::Camera camera = built.world.camera;
     times.load_ms = now_ms() - load_start;
 
+    std::shared_ptr<stages::TracedWorld> traced;
     if (a.request.error > 0 || a.request.budget > 0) {
-        const chart::AutoChoice choice = chart::choose_settings(device, built.world, scene, a.request, a.options);
+        // What is traced is needed anyway, and made once.
+        const double prepare_start = now_ms();
+        traced = std::make_shared<stages::TracedWorld>();
+        throw_faults(traced->build(device.executor(), built.world));
+        times.prepare_ms = now_ms() - prepare_start;
+        const chart::AutoChoice choice = chart::choose_settings(device, built.world, traced, scene, a.request, a.options);
         times.probe_ms = choice.probe_ms;
         std::fprintf(stderr, "nephroid: auto picks %s: %s\n", choice.options.c_str(), choice.why.c_str());
     }
     say_notes(failure_notes(built.world, a.options.settings));
     const double prepare_start = now_ms();
-    stages::Renderer renderer(device, built.world, a.options.settings);
+    stages::Renderer renderer(device, built.world, a.options.settings, traced);
     throw_faults(renderer.faults());
-    times.prepare_ms = now_ms() - prepare_start;
+    times.prepare_ms += now_ms() - prepare_start;
     Progress progress;
     std::string progress_prefix;
     renderer.listen(&progress);

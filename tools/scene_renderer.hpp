@@ -24,7 +24,7 @@ std::vector<RenderedPass> passes_of(const stages::Renderer& renderer, const stag
 
 struct SceneRendering {
     PictureData picture;  // with its layers
-    double prepare_ms = 0;              // memory for the pictures: what a second frame would reuse
+    double prepare_ms = 0;              // memory for the pictures, and what is traced: what a second frame would reuse
     std::vector<double> frame_ms;       // per run
     PipelineStatistics statistics;      // the sum over the passes of a frame
     std::vector<RenderedPass> passes;

@@ -8,11 +8,13 @@
 #include "scenes/bundled.hpp"
 #include "scenes/shapes.hpp"
 #include "tests/tools/program.hpp"
+#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/auto_settings.hpp"
 #include "tools/chart/model_views.hpp"
 #include "tools/chart/sweep.hpp"
 #include "tools/picture_file.hpp"
 #include "tools/throw_faults.hpp"
+#include "tools/world_builder.hpp"
 
 using namespace nephroid;
 using namespace nephroid::chart;
@@ -21,8 +23,8 @@ using namespace test;
 namespace {
 
 // Errors that a law gives: ratios of the change that fall by half, and a floor.
-ModelRow row(const std::string& scene, double change, double facets, double floor) {
-    ModelRow r{scene, scene + ".0", change, 0.3, facets, false, false, false, 10, {}, {}, {}};
+ModelRow row(const std::string& scene, double change, double detail, double floor) {
+    ModelRow r{scene, scene + ".0", change, detail, 0.3, false, false, 10, {}, {}, {}};
     for (std::size_t k = 0; k < ladder().size(); ++k) {
         r.errors.push_back(k + 1 == ladder().size() ? floor : 1.5 * change * std::pow(0.5, static_cast<double>(k)) + floor);
         r.costs.push_back(50 + 10.0 * std::pow(3.0, static_cast<double>(k)));
@@ -33,7 +35,7 @@ ModelRow row(const std::string& scene, double change, double facets, double floo
 std::vector<ModelRow> lawful_rows() {
     std::vector<ModelRow> rows;
     for (int scene = 0; scene < 40; ++scene)
-        for (const double facets : {0.01, 0.1, 0.4}) rows.push_back(row(std::string(1, 's').append(std::to_string(scene)), 0.5 * std::pow(1.1, scene), facets, facets + 0.01));
+        for (const double detail : {0.1, 1.0, 9.0}) rows.push_back(row(std::string(1, 's').append(std::to_string(scene)), 0.5 * std::pow(1.1, scene), detail, 0.1 * detail));
     return rows;
 }
 
@@ -56,8 +58,10 @@ std::string refusal(const std::string& csv) {
 Probe probe_of(const scenes::Scene& scene, int lanes, int threads) {
     Device device({.threads = threads, .lanes = lanes});
     throw_faults(device.faults());
-    SceneRenderer renderer(device, scene);
-    return probe(device, renderer.world(), scene, 512, 384);
+    const BuiltWorld built = build_world(device, scene);
+    const auto traced = std::make_shared<stages::TracedWorld>();
+    throw_faults(traced->build(device.executor(), built.world));
+    return probe(device, built.world, traced, scene, 512, 384);
 }
 
 std::string hash_of(const Folder& folder, std::vector<std::string> arguments) {
@@ -88,12 +92,12 @@ std::vector<std::string> words_of(const std::string& text) {
 
 TEST_CASE("the model finds the law that its views follow, and knows how far off it is") {
     const std::vector<ModelRow> rows = lawful_rows();
-    const ModelRow asked = row("new", 3.7, 0.2, 0.21);
+    const ModelRow asked = row("new", 3.7, 3.0, 0.3);
     const std::vector<Expectation> expected = ErrorModel(rows).expect(asked, asked.costs);
     REQUIRE(expected.size() == ladder().size());
     for (std::size_t k = 0; k + 1 < expected.size(); ++k) {
-        CHECK(expected[k].from_change == doctest::Approx(asked.errors[k] - 0.21).epsilon(0.05));
-        CHECK(expected[k].floor == doctest::Approx(0.21).epsilon(0.1));
+        CHECK(expected[k].from_change == doctest::Approx(asked.errors[k] - 0.3).epsilon(0.05));
+        CHECK(expected[k].floor == doctest::Approx(0.3).epsilon(0.1));
         CHECK(expected[k].at(0, 0) == doctest::Approx(asked.errors[k]).epsilon(0.05));
         CHECK(expected[k].at(1, 0) > expected[k].at(0, 0));
         CHECK(expected[k].change_spread == doctest::Approx(0.3));  // the least that is ever expected
@@ -103,19 +107,19 @@ TEST_CASE("the model finds the law that its views follow, and knows how far off 
     // Floors that are off by a factor of 3 to both sides of the law, in every other scene.
     std::vector<ModelRow> scattered = rows;
     for (std::size_t r = 0; r < scattered.size(); ++r)
-        scattered[r] = row(rows[r].scene, rows[r].change, rows[r].facets, (rows[r].facets + 0.01) * ((r / 3) % 2 ? 3.0 : 1 / 3.0));
+        scattered[r] = row(rows[r].scene, rows[r].change, rows[r].detail, 0.1 * rows[r].detail * ((r / 3) % 2 ? 3.0 : 1 / 3.0));
     const double spread = ErrorModel(scattered).expect(asked, asked.costs)[2].floor_spread;
     CHECK(spread > 0.95 * std::log(3.0));
     CHECK(spread < 1.05 * 1.4826 * std::log(3.0));
     // A wild view elsewhere hardly moves it.
     std::vector<ModelRow> wild = rows;
-    for (int k = 0; k < 3; ++k) wild.push_back(row("wild", 3.7, 0.02, 1000));
-    CHECK(ErrorModel(wild).expect(asked, asked.costs)[2].floor == doctest::Approx(0.21).epsilon(0.15));
+    for (int k = 0; k < 3; ++k) wild.push_back(row("wild", 3.7, 0.2, 1000));
+    CHECK(ErrorModel(wild).expect(asked, asked.costs)[2].floor == doctest::Approx(0.3).epsilon(0.15));
     // Views like the one that is asked for are believed over the law, and others are not moved by them.
     std::vector<ModelRow> odd = rows;
-    for (int k = 0; k < 20; ++k) odd.push_back(row("odd", 3.7, 0.2, 4.0));
-    const std::vector<Expectation> believed = ErrorModel(odd).expect(asked, asked.costs), elsewhere = ErrorModel(odd).expect(row("far", 3.7, 0.02, 0.03), asked.costs);
-    CHECK(believed[0].floor == doctest::Approx(4.0).epsilon(0.25));
+    for (int k = 0; k < 20; ++k) odd.push_back(row("odd", 3.7, 3.0, 2.0));
+    const std::vector<Expectation> believed = ErrorModel(odd).expect(asked, asked.costs), elsewhere = ErrorModel(odd).expect(row("far", 3.7, 0.3, 0.03), asked.costs);
+    CHECK(believed[0].floor == doctest::Approx(2.0).epsilon(0.25));
     CHECK(elsewhere[0].floor == doctest::Approx(0.03).epsilon(0.25));
     CHECK_THROWS_WITH(ErrorModel({}), "the model of errors has no views to go by");
 }
@@ -161,17 +165,16 @@ TEST_CASE("what no method draws is refused, whatever else is expected") {
 
 TEST_CASE("a model's data come back as they were, and other data are refused with their line") {
     std::vector<ModelRow> rows = lawful_rows();
-    rows[0].crossing = rows[1].medium = rows[2].dispersion = true;
+    rows[1].medium = rows[2].dispersion = true;
     const std::string csv = to_csv(rows);
     const std::vector<ModelRow> back = model_from_csv(csv, "m.csv");
     CHECK(to_csv(back) == csv);
     REQUIRE(back.size() == rows.size());
-    CHECK(back[0].crossing);
     CHECK(back[1].medium);
     CHECK(back[2].dispersion);
     CHECK(back[5].errors[3] == doctest::Approx(rows[5].errors[3]).epsilon(1e-3));
     CHECK(refusal("scene,view\n") == "m.csv: line 1: is not of this program's ladder of settings");
-    CHECK(refusal(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 30");
+    CHECK(refusal(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 29");
     std::string broken = csv;
     CHECK(refusal(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "x")).find("m.csv: line 2: 'x' is no number from 0 on") == 0);
     broken = csv;
@@ -204,35 +207,17 @@ TEST_CASE("a probe tells the same for every number of lanes and threads") {
     }
 }
 
-TEST_CASE("a probe draws one picture where the meshes are large") {
-    scenes::Scene scene = scenes::bundled_scene("glass-sphere");
-    CHECK_FALSE(std::isnan(probe_of(scene, 0, 0).change));
-    scene.meshes[1] = scenes::make_sphere("sphere", scene.meshes[1].material, {0, 0.55f, 0}, 0.5f, 7);  // 327,680 triangles
-    const Probe large = probe_of(scene, 0, 0);
-    CHECK(std::isnan(large.change));
-    CHECK(large.cost > 0);
-    // What is chosen then is no cheapest setting, and not refused, where the error asked for is loose.
-    const ModelRow features{"", "", large.change, 0.3, 0.02, false, false, false, large.cost, {}, {}, {}};
-    const Choice choice = choose_for_error(ErrorModel(lawful_rows()).expect(features, {100, 105, 110, 120, 150, 300, 700}), 0.3, 60);
-    CHECK(choice.step > 0);
-}
-
-TEST_CASE("a probe sees media, dispersion, and specular objects in a row") {
-    CHECK_FALSE(probe_of(scenes::bundled_scene("glass-sphere"), 0, 0).crossing);
-    CHECK(probe_of(scenes::bundled_scene("sphere-above-water"), 0, 0).crossing);
+TEST_CASE("a probe sees media, dispersion, and how much of a picture edges are") {
+    const Probe plain = probe_of(scenes::bundled_scene("glass-sphere"), 0, 0);
+    CHECK_FALSE(plain.medium);
+    CHECK_FALSE(plain.dispersion);
     CHECK(probe_of(scenes::bundled_scene("sphere-in-fog"), 0, 0).medium);
     CHECK(probe_of(scenes::bundled_scene("prism"), 0, 0).dispersion);
-    // The same ball twice: behind itself as the light comes, and far beside it.
-    scenes::Scene scene = scenes::bundled_scene("glass-sphere");
-    const auto with_second = [&](const glm::vec3& step) {
-        scenes::Scene two = scene;
-        two.meshes.push_back(two.meshes.back());
-        for (glm::vec3& p : two.meshes.back().positions) p += step;
-        return probe_of(two, 0, 0).crossing;
-    };
-    const glm::vec3 from_light = glm::vec3(0.0f, 0.55f, 0.0f) - scene.lights.front().position;
-    CHECK(with_second(0.5f * from_light));
-    CHECK_FALSE(with_second({1.0f, 0.0f, 3.0f}));
+    // A shadow's edge, and a wall without one.
+    scenes::Scene bare = scenes::bundled_scene("glass-sphere");
+    bare.meshes.erase(bare.meshes.begin() + 1);
+    CHECK(plain.detail > 3 * probe_of(bare, 0, 0).detail);
+    CHECK(probe_of(bare, 0, 0).change == 0);
 }
 
 TEST_CASE("auto: what it picks is what render draws with these options, whatever the lanes and threads") {
@@ -273,7 +258,7 @@ TEST_CASE("auto: what cannot be had is refused with one line, and nothing is wri
     };
     const std::string starts[] = {
         "nephroid: --error 0.1: nothing is expected to meet it: the scene has a medium or dispersion, which is not drawn\n",
-        "nephroid: --error 0.0001: nothing is expected to meet it: the best that can be had is --variant ",
+        "nephroid: --error 0.0001: nothing is expected to meet it: the best that can be had is --tracing exact ",
         "nephroid: --budget 0.01: the cheapest setting is expected to take ",
         "nephroid: --error: needs --technique auto\n",
         "nephroid: --error: --technique auto picks --photons, which is given as well\n",

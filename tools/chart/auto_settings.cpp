@@ -23,8 +23,8 @@ void take(const RenderOptions& step, RenderOptions& options) {
 
 }  // namespace
 
-AutoChoice choose_settings(Device& device, const stages::World& world, const scenes::Scene& scene, const AutoRequest& request, RenderOptions& options) {
-    const Probe found = probe(device, world, scene, options.settings.width, options.settings.height);
+AutoChoice choose_settings(Device& device, const stages::World& world, std::shared_ptr<stages::TracedWorld> traced, const scenes::Scene& scene, const AutoRequest& request, RenderOptions& options) {
+    const Probe found = probe(device, world, std::move(traced), scene, options.settings.width, options.settings.height);
     std::vector<RenderOptions> steps;
     std::vector<double> costs;
     for (const std::string& text : ladder()) {
@@ -33,7 +33,7 @@ AutoChoice choose_settings(Device& device, const stages::World& world, const sce
         costs.push_back(expected_cost(found, step.settings));
         steps.push_back(std::move(step));
     }
-    const ModelRow features{"", "", found.change, found.caustic_share, found.facets, found.crossing, found.medium, found.dispersion, found.cost, {}, {}, {}};
+    const ModelRow features{"", "", found.change, found.detail, found.caustic_share, found.medium, found.dispersion, found.cost, {}, {}, {}};
     std::vector<Expectation> expected = ErrorModel(model_rows()).expect(features, costs);
     // What a cost is here, by what the probe took.
     const double ms_of_cost = found.milliseconds / found.cost, left = request.budget / ms_of_cost - found.cost;

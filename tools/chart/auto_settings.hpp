@@ -1,5 +1,6 @@
 // `render --technique auto`: settings that meet an error, or fit a budget.
 #pragma once
+#include <memory>
 #include <string>
 
 #include "tools/chart/error_model.hpp"
@@ -21,6 +22,6 @@ struct AutoChoice {
 // Puts the chosen method and settings into `options`; size, samples and where they run stay. With an error the choice is the
 // same for every number of threads, lane width and machine. Throws std::runtime_error, one line, where nothing meets the
 // request: what is the best that can be had.
-AutoChoice choose_settings(Device& device, const stages::World& world, const scenes::Scene& scene, const AutoRequest& request, RenderOptions& options);
+AutoChoice choose_settings(Device& device, const stages::World& world, std::shared_ptr<stages::TracedWorld> traced, const scenes::Scene& scene, const AutoRequest& request, RenderOptions& options);
 
 }  // namespace nephroid::chart

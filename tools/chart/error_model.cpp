@@ -54,8 +54,8 @@ std::vector<std::string_view> split(std::string_view text, char at) {
     }
 }
 
-const char* column_names = "scene,view,change,caustic_share,facets,crossing,medium,dispersion,probe_cost";
-constexpr std::size_t plain_columns = 9;
+const char* column_names = "scene,view,change,detail,caustic_share,medium,dispersion,probe_cost";
+constexpr std::size_t plain_columns = 8;
 
 std::string header() {
     std::string text = column_names;
@@ -70,7 +70,7 @@ const std::vector<std::string>& ladder() {
     static const std::vector<std::string> steps = [] {
         std::vector<std::string> all;
         for (const auto& [photons, map] : {std::pair{16, 32}, {32, 64}, {64, 128}, {128, 256}, {256, 512}, {512, 1024}, {1024, 1024}})
-            all.push_back(printf_text("--variant two-sided --photons %d^2 --map-size %d --iterations 6 --bounces 4 --no-inner-reflections", photons, map));
+            all.push_back(printf_text("--tracing exact --photons %d^2 --map-size %d --bounces 4 --no-inner-reflections", photons, map));
         return all;
     }();
     return steps;
@@ -81,7 +81,7 @@ const std::vector<std::string>& ladder() {
 std::string to_csv(const std::vector<ModelRow>& rows) {
     std::string text = header() + "\n";
     for (const ModelRow& r : rows) {
-        text += r.scene + "," + r.view + printf_text(",%.4g,%.4g,%.4g,%d,%d,%d,%.4g", r.change, r.caustic_share, r.facets, r.crossing, r.medium, r.dispersion, r.probe_cost);
+        text += r.scene + "," + r.view + printf_text(",%.4g,%.4g,%.4g,%d,%d,%.4g", r.change, r.detail, r.caustic_share, r.medium, r.dispersion, r.probe_cost);
         for (const std::vector<double>* values : {&r.errors, &r.costs, &r.expected_costs})
             for (const double v : *values) text += printf_text(",%.4g", v);
         text += "\n";
@@ -106,11 +106,11 @@ std::vector<ModelRow> model_from_csv(std::string_view text, const std::string& p
         for (std::size_t c = 2; c < cells.size(); ++c) {
             double value = 0;
             const auto [end, error] = std::from_chars(cells[c].data(), cells[c].data() + cells[c].size(), value);
-            if (error != std::errc() || end != cells[c].data() + cells[c].size() || value < 0 || (std::isnan(value) && c > 2)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
+            if (error != std::errc() || end != cells[c].data() + cells[c].size() || !(value >= 0)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
             numbers.push_back(value);
         }
-        ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4] != 0, numbers[5] != 0, numbers[6], {}, {}, {}};
-        const auto part = [&](std::size_t which) { return std::vector<double>(&numbers[7 + which * steps], &numbers[7 + which * steps] + steps); };
+        ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4] != 0, numbers[5], {}, {}, {}};
+        const auto part = [&](std::size_t which) { return std::vector<double>(&numbers[6 + which * steps], &numbers[6 + which * steps] + steps); };
         r.errors = part(0), r.costs = part(1), r.expected_costs = part(2);
         rows.push_back(std::move(r));
     }
@@ -138,11 +138,12 @@ double standard_deviation(std::vector<double> residuals) {
     return 1.4826 * middle(std::move(residuals));
 }
 
-// Of what a lack of photons makes to the change; NaN where the floor hides it.
+// Of what a lack of photons makes to the change; NaN where there is no telling, and -INFINITY where the floor hides it: it is
+// less than elsewhere.
 double log_ratio(double change, double error, double floor) {
     const double above = error - floor;
-    if (change > 0.01 && above > 0.3 * floor) return logarithm(above / change);
-    return change > 0.1 ? logarithm(0.02 * floor / change) : NAN;
+    if (!(change > 0.01)) return NAN;
+    return above > 0.3 * floor ? logarithm(above / change) : -INFINITY;
 }
 
 // What no number of photons helps.
@@ -151,12 +152,12 @@ double floor_of(const ModelRow& r) { return std::max(*std::min_element(r.errors.
 }  // namespace
 
 ErrorModel::Terms ErrorModel::terms_of(const ModelRow& r) {
-    return {1.0, logarithm(r.facets + 0.01) + 4.0, 0.5 * logarithm(r.change + 0.01) + 0.5, r.crossing ? 1.0 : 0.0};
+    return {1.0, logarithm(r.detail + 0.001) + 4.0, 0.5 * logarithm(r.change + 0.01) + 0.5};
 }
 
 // Least squares of the floors' logarithms, held towards no slope; what lies far off weighs less (Huber 1964).
 ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& rows) {
-    constexpr Terms hold = {1e-9, 0.3, 1.0, 0.3};
+    constexpr Terms hold = {1e-9, 0.3, 1.0};
     Terms slopes{};
     std::vector<double> weights(rows.size(), 1.0);
     for (int round = 0; round < 8; ++round) {
@@ -182,7 +183,7 @@ ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& row
 ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
     std::vector<const ModelRow*> used;
     for (const ModelRow& r : rows)
-        if (!r.medium && !r.dispersion && !std::isnan(r.change)) used.push_back(&r);
+        if (!r.medium && !r.dispersion) used.push_back(&r);
     if (used.empty()) throw std::runtime_error("the model of errors has no views to go by");
     // Above its floor a view's error is in proportion to its change.
     std::vector<std::vector<double>> of_view(used.size());  // log ratio of each step; NaN: too little is known
@@ -192,11 +193,14 @@ ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
         std::vector<double> ratios;
         for (const std::vector<double>& v : of_view)
             if (!std::isnan(v[step])) ratios.push_back(v[step]);
-        // Of the finest there is too little above the floors: twice the photons, half the error.
-        const bool told = ratios.size() >= 3 && step + 1 < ladder().size();
-        const double ratio = told ? middle(ratios) : steps_.empty() ? 0 : steps_.back().log_ratio - logarithm(2.0);
+        std::sort(ratios.begin(), ratios.end());
+        // Where most are hidden, as with the finest settings: four times the photons, a fourth of the error.
+        const bool told = ratios.size() >= 3 && std::isfinite(ratios[(ratios.size() - 1) / 2]);
+        const double ratio = told ? middle(ratios) : steps_.empty() ? 0 : steps_.back().log_ratio - logarithm(4.0);
         double spread = steps_.empty() ? least_spread : steps_.back().spread;
         if (told) {
+            // Of those above the middle, which are known.
+            ratios.erase(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
             for (double& r : ratios) r -= ratio;
             spread = std::clamp(standard_deviation(ratios), least_spread, most_spread);
         }
@@ -218,22 +222,17 @@ ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
     for (std::size_t r = 0; r < used.size(); ++r) {
         double sum = 0, count = 0;
         for (std::size_t step = 0; step + 1 < ladder().size(); ++step)
-            if (!std::isnan(of_view[r][step])) sum += std::clamp((of_view[r][step] - steps_[step].log_ratio) / steps_[step].spread, -2.5, 2.5), count += 1;
+            if (std::isfinite(of_view[r][step])) sum += std::clamp((of_view[r][step] - steps_[step].log_ratio) / steps_[step].spread, -2.5, 2.5), count += 1;
         known_.push_back({place_of(*used[r]), count > 0 ? sum / count : 0, logarithm(floor_of(*used[r])) - dot(floor_, terms_of(*used[r]))});
     }
 }
 
 // Views that are a distance of 1 apart have little to do with each other.
 ErrorModel::Terms ErrorModel::place_of(const ModelRow& r) {
-    return {logarithm(r.facets + 0.01) / 0.25, logarithm(r.change + 0.001) / 1.0, logarithm(r.caustic_share + 0.01) / 0.7, r.crossing ? 2.0 : 0.0};
+    return {logarithm(r.detail + 0.001) / 0.5, logarithm(r.change + 0.001) / 1.0, logarithm(r.caustic_share + 0.01) / 0.7};
 }
 
-std::vector<Expectation> ErrorModel::expect(const ModelRow& asked, const std::vector<double>& costs) const {
-    // A change that is not known is taken to be a middling one, and may be far from that.
-    constexpr double middling = 0.1, far = 1.5;
-    const bool known = !std::isnan(asked.change);
-    ModelRow features = asked;
-    if (!known) features.change = middling;
+std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std::vector<double>& costs) const {
     // What is known of views like this one, and as much as one view's worth that it is like none: means and variances, of
     // ratios in standard deviations.
     const Terms place = place_of(features);
@@ -250,7 +249,7 @@ std::vector<Expectation> ErrorModel::expect(const ModelRow& asked, const std::ve
     std::vector<Expectation> expected;
     for (std::size_t step = 0; step < ladder().size(); ++step) {
         const Step& s = steps_[step];
-        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, known ? least_spread : far),
+        Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, least_spread),
                       exponential(dot(floor_, terms_of(features)) + floors), std::max(floor_spread, least_spread), costs[step]};
         // What is not drawn at all is an error of its own kind.
         if (features.medium || features.dispersion) e.floor = INFINITY;

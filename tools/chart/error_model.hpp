@@ -2,7 +2,7 @@
 //
 // An error is what a lack of photons makes of it, and a floor below which no number of photons brings it. The former is in
 // proportion to how much a probe's pictures differ (probe.hpp), with a ratio for each step of a ladder of settings; the
-// latter grows with the coarseness of meshes, with that difference, and where light meets two specular objects in a row.
+// latter grows with a picture's detail and with that difference.
 // Ratios are medians over the model's views, the floor's logarithm a robust linear fit; both are expected to be as far off
 // as they were for the views, the floor as far as for scenes that the fit was made without. Where views are much like the one
 // that is asked for, it is expected to be off as they are, and less uncertainly so. The data, model.csv, are made by
@@ -23,8 +23,8 @@ const std::vector<std::string>& ladder();
 // A view that was measured: a line of the data.
 struct ModelRow {
     std::string scene, view;
-    double change = 0, caustic_share = 0, facets = 0;
-    bool crossing = false, medium = false, dispersion = false;
+    double change = 0, detail = 0, caustic_share = 0;
+    bool medium = false, dispersion = false;
     double probe_cost = 0;
     std::vector<double> errors, costs, expected_costs;  // for each of the ladder: relMSE without the truth's noise, cost, and expected_cost()
 };
@@ -47,11 +47,11 @@ class ErrorModel {
 public:
     // Throws std::runtime_error where there is no view to go by.
     explicit ErrorModel(const std::vector<ModelRow>& rows);
-    // For each of the ladder; costs are those given. The change may be NaN, not known.
+    // For each of the ladder; costs are those given.
     std::vector<Expectation> expect(const ModelRow& features, const std::vector<double>& costs) const;
 
 private:
-    static constexpr int terms = 4;
+    static constexpr int terms = 3;
     static constexpr double least_spread = 0.3, most_spread = 0.8;  // of logarithms
     using Terms = std::array<double, terms>;
     static Terms terms_of(const ModelRow& row);

@@ -66,12 +66,11 @@ void fill(Executor& executor, const TargetView& view, Color4 color) {
     alignas(16) std::byte texel[16];
     store_texel<format>(texel, color);
     constexpr int rows_per_piece = 64;
-    for (int level = view.first_level; level < view.first_level + view.level_count; ++level) {
-        const Texture& t = *view.texture;
-        const int height = t.height(level), pieces = (height + rows_per_piece - 1) / rows_per_piece;
+    for (int level = 0; level < view.level_count; ++level) {
+        const int height = view.height(level), pieces = (height + rows_per_piece - 1) / rows_per_piece;
         executor.for_each(pieces * view.layer_count, [&](int piece, int) {
-            const int layer = view.first_layer + piece / pieces, first = piece % pieces * rows_per_piece;
-            for (int y = first; y < std::min(height, first + rows_per_piece); ++y) fill_row<format>(t.row(y, level, layer), t.width(level), texel);
+            const int layer = piece / pieces, first = piece % pieces * rows_per_piece;
+            for (int y = first; y < std::min(height, first + rows_per_piece); ++y) fill_row<format>(view.row(y, level, layer), view.width(level), texel);
         });
     }
 }

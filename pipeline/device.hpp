@@ -100,7 +100,7 @@ public:
     }
     DrawResult draw(const ProgramRef& program, const PipelineState& state, const DrawCall& call);
 
-    // Fills every level and layer of the view. A depth target takes red; R32U takes red's bits.
+    // Fills every level, layer and row of the view. A depth target takes red; R32U takes red's bits.
     Faults clear(const TargetView& view, const glm::vec4& value);
 
     // Bytes that this device holds for draws on their way.

@@ -165,27 +165,25 @@ int pixel_floor(float v) { return to_int(floor(v)); }
 void resolve_targets(DrawContext& draw, const DrawCall& call, const TargetView* reference) {
     const PipelineState& state = draw.state;
     draw.tile_count = 0;
-    const Texture* shape = reference ? reference->texture : nullptr;
-    const float first_width = shape ? static_cast<float>(shape->width(reference->first_level)) : 1.0f, first_height = shape ? static_cast<float>(shape->height(reference->first_level)) : 1.0f;
+    const float first_width = reference ? static_cast<float>(reference->width()) : 1.0f, first_height = reference ? static_cast<float>(reference->height()) : 1.0f;
     for (int layer = 0; layer < draw.target_layers; ++layer) {
         for (int level = 0; level < draw.target_levels; ++level) {
             RasterTarget& t = draw.targets[layer * draw.target_levels + level];
             t = RasterTarget{};
             t.layer = layer;
             t.level = level;
-            t.width = shape ? shape->width(reference->first_level + level) : 1;
-            t.height = shape ? shape->height(reference->first_level + level) : 1;
+            t.width = reference ? reference->width(level) : 1;
+            t.height = reference ? reference->height(level) : 1;
             for (int c = 0; c < draw.color_count; ++c) {
                 const TargetView& view = call.render_targets[c];
                 if (!view.bound()) continue;  // allowed where nothing is rasterized
-                const int l = view.first_level + level;
-                t.color[c] = view.texture->row(0, l, view.first_layer + layer);
-                t.color_pitch[c] = std::ptrdiff_t{view.texture->layout().level[l].row_pitch} * bytes_per_texel(view.texture->format());
+                t.color[c] = view.row(0, level, layer);
+                t.color_pitch[c] = std::ptrdiff_t{view.texture->layout().level[view.first_level + level].row_pitch} * bytes_per_texel(view.texture->format());
             }
             if (call.depth_target.bound()) {
-                const int l = call.depth_target.first_level + level;
-                t.depth = call.depth_target.texture->row(0, l, call.depth_target.first_layer + layer);
-                t.depth_pitch = std::ptrdiff_t{call.depth_target.texture->layout().level[l].row_pitch} * 4;
+                const TargetView& view = call.depth_target;
+                t.depth = view.row(0, level, layer);
+                t.depth_pitch = std::ptrdiff_t{view.texture->layout().level[view.first_level + level].row_pitch} * 4;
             }
             // The viewport keeps its place relative to the level's size.
             Viewport v = state.viewport;
@@ -221,11 +219,8 @@ void resolve_targets(DrawContext& draw, const DrawCall& call, const TargetView* 
 int count_tiles(const DrawContext& draw, const TargetView* reference) {
     if (!reference) return 1;
     int tiles = 0;
-    for (int level = 0; level < draw.target_levels; ++level) {
-        const Texture& t = *reference->texture;
-        const int l = reference->first_level + level;
-        tiles += ((t.width(l) + tile_size - 1) / tile_size) * ((t.height(l) + tile_size - 1) / tile_size);
-    }
+    for (int level = 0; level < draw.target_levels; ++level)
+        tiles += ((reference->width(level) + tile_size - 1) / tile_size) * ((reference->height(level) + tile_size - 1) / tile_size);
     return tiles * draw.target_layers;
 }
 

@@ -53,7 +53,12 @@ struct TargetView {
     const Texture* texture = nullptr;
     int first_level = 0, level_count = 0;
     int first_layer = 0, layer_count = 0;
+    // Of one level: a band of its rows, which is a target as high as that; 0: all rows.
+    int first_row = 0, row_count = 0;
     bool bound() const { return texture != nullptr; }
+    int width(int level = 0) const;   // of a level, counted from the first
+    int height(int level = 0) const;
+    std::byte* row(int y, int level = 0, int layer = 0) const;
 };
 
 class Texture {
@@ -80,6 +85,8 @@ public:
     TargetView all() const { return {this, 0, mip_levels(), 0, empty() ? 0 : slices()}; }
     TargetView mips(int first_level, int level_count, int layer = 0) const { return {this, first_level, level_count, layer, 1}; }
     TargetView layers(int first_layer, int layer_count, int level = 0) const { return {this, level, 1, first_layer, layer_count}; }
+    // Rows of the first level and layer. What belongs to a large target's texels for a moment only can then be kept in a small one.
+    TargetView rows(int first_row, int row_count) const { return {this, 0, 1, 0, 1, first_row, row_count}; }
 
     // The address of a row of texels, for the host. 0 <= slice < slices(level), 0 <= y < height(level).
     std::byte* row(int y, int level = 0, int slice = 0) const {
@@ -96,6 +103,10 @@ private:
     HostMemory layout_memory_;
     HostMemory texels_;
 };
+
+inline int TargetView::width(int level) const { return texture->width(first_level + level); }
+inline int TargetView::height(int level) const { return row_count ? row_count : texture->height(first_level + level); }
+inline std::byte* TargetView::row(int y, int level, int layer) const { return texture->row(first_row + y, first_level + level, first_layer + layer); }
 
 // The layout that stands for a texture that is not there: one texel of zeros in every format.
 const TextureLayout& empty_texture_layout();

@@ -76,7 +76,8 @@ bool overlap(const TargetView& a, const TargetView& b) {
     const auto meet = [](std::int64_t first, std::int64_t count, std::int64_t other_first, std::int64_t other_count) {
         return first < other_first + other_count && other_first < first + count;
     };
-    return a.texture == b.texture && meet(a.first_level, a.level_count, b.first_level, b.level_count) && meet(a.first_layer, a.layer_count, b.first_layer, b.layer_count);
+    return a.texture == b.texture && meet(a.first_level, a.level_count, b.first_level, b.level_count) && meet(a.first_layer, a.layer_count, b.first_layer, b.layer_count) &&
+           (!a.row_count || !b.row_count || meet(a.first_row, a.row_count, b.first_row, b.row_count));
 }
 
 void validate_targets(const ProgramRef& program, const PipelineState& state, const DrawCall& call, Faults& faults) {
@@ -92,8 +93,8 @@ void validate_targets(const ProgramRef& program, const PipelineState& state, con
         if (view.layer_count != reference->layer_count) faults.add(object, "must have as many layers as the other targets", view.layer_count, reference->layer_count);
         const Texture &t = *view.texture, &r = *reference->texture;
         if (view.first_level < 0 || view.first_level >= t.mip_levels() || reference->first_level < 0 || reference->first_level >= r.mip_levels()) return;
-        if (t.width(view.first_level) != r.width(reference->first_level)) faults.add(object, "must be as wide as the other targets", t.width(view.first_level), r.width(reference->first_level));
-        if (t.height(view.first_level) != r.height(reference->first_level)) faults.add(object, "must be as high as the other targets", t.height(view.first_level), r.height(reference->first_level));
+        if (view.width() != reference->width()) faults.add(object, "must be as wide as the other targets", view.width(), reference->width());
+        if (view.height() != reference->height()) faults.add(object, "must be as high as the other targets", view.height(), reference->height());
     };
     for (int t = 0; t < max_render_targets; ++t) {
         const TargetView& view = call.render_targets[t];
@@ -152,6 +153,10 @@ void validate_view(const TargetView& view, const char* object, Faults& faults) {
     }
     const int slices = t.slices(static_cast<int>(levels_end) - 1);
     if (view.first_layer < 0 || view.layer_count < 1 || layers_end > slices) faults.add(object, "names layers that the texture does not have", layers_end, slices);
+    if (!view.row_count && !view.first_row) return;
+    const std::int64_t rows_end = std::int64_t{view.first_row} + view.row_count;
+    if (view.level_count > 1) faults.add(object, "has rows of several levels", view.level_count, 1);
+    if (view.first_row < 0 || view.row_count < 1 || rows_end > t.height(view.first_level)) faults.add(object, "names rows that the texture does not have", rows_end, t.height(view.first_level));
 }
 
 std::int64_t input_count(const DrawCall& call) {

@@ -224,6 +224,31 @@ Scene closed_box() {
     return scene;
 }
 
+// Three bulges and, on them, waves of half a radius: a caustic of many threads.
+constexpr std::array<Ripple, 7> lens_ripples{{{0.07f, {2.6f, 2.2f, -1.4f}, 0.4f},
+                                              {0.05f, {-1.9f, 3.6f, 2.3f}, 2.0f},
+                                              {0.03f, {3.1f, -2.7f, 4.4f}, 4.1f},
+                                              {0.014f, {8.3f, 4.1f, -3.7f}, 1.1f},
+                                              {0.012f, {-5.2f, 7.9f, 6.3f}, 3.0f},
+                                              {0.010f, {4.6f, -9.7f, 7.4f}, 5.2f},
+                                              {0.007f, {-12.4f, -3.8f, 9.1f}, 0.9f}}};
+
+// After Wyman's rooms: a refractor of some hundred thousand triangles between walls, and two lamps.
+Scene refractor_room() {
+    Scene scene;
+    constexpr glm::vec3 low{-2.0f, 0.0f, -2.0f}, high{2.0f, 2.8f, 2.4f};
+    scene.meshes.push_back(make_room("room", add_lambert(scene, "room", glm::vec3(0.75f)), low, high, {.left = false, .right = false}));
+    scene.meshes.push_back(make_room("left wall", add_lambert(scene, "left wall", {0.6f, 0.35f, 0.25f}), low, high, {.right = false, .bottom = false, .top = false, .back = false, .front = false}));
+    scene.meshes.push_back(make_room("right wall", add_lambert(scene, "right wall", {0.3f, 0.45f, 0.55f}), low, high, {.left = false, .bottom = false, .top = false, .back = false, .front = false}));
+    scene.meshes.push_back(make_rippled_sphere("refractor", add_glass(scene, "glass", 1.45f), {0.0f, 0.95f, -0.3f}, 0.55f, 7, lens_ripples));
+    add_point_light(scene, {-1.5f, 2.4f, 0.5f}, 9.0f);
+    scene.lights.back().name = "left lamp";
+    add_point_light(scene, {1.4f, 2.2f, 0.9f}, 7.0f);
+    scene.lights.back().name = "right lamp";
+    add_camera(scene, {0.1f, 1.75f, 2.3f}, {0.0f, 0.8f, -0.6f}, 0.95f);
+    return scene;
+}
+
 struct Entry {
     std::string_view name;
     Scene (*make)();
@@ -236,18 +261,20 @@ constexpr std::array entries{Entry{"glass-sphere", glass_sphere},
                              Entry{"sphere-above-water", sphere_above_water},
                              Entry{"prism", prism},
                              Entry{"wine-glass", wine_glass},
-                             Entry{"closed-box", closed_box}};
+                             Entry{"closed-box", closed_box},
+                             Entry{"refractor-room", refractor_room}};
+constexpr std::size_t large_entries = 1;  // the last
+
+constexpr auto names = [] {
+    std::array<std::string_view, entries.size()> list;
+    for (std::size_t k = 0; k < entries.size(); ++k) list[k] = entries[k].name;
+    return list;
+}();
 
 }  // namespace
 
-std::span<const std::string_view> bundled_scene_names() {
-    static constexpr auto names = [] {
-        std::array<std::string_view, entries.size()> list;
-        for (std::size_t k = 0; k < entries.size(); ++k) list[k] = entries[k].name;
-        return list;
-    }();
-    return names;
-}
+std::span<const std::string_view> bundled_scene_names() { return std::span(names).first(entries.size() - large_entries); }
+std::span<const std::string_view> all_bundled_scene_names() { return names; }
 
 Scene bundled_scene(std::string_view name) {
     for (const Entry& entry : entries) {
@@ -257,7 +284,7 @@ Scene bundled_scene(std::string_view name) {
         return scene;
     }
     std::string list;
-    for (const std::string_view known : bundled_scene_names()) list += (list.empty() ? "" : ", ") + std::string(known);
+    for (const std::string_view known : all_bundled_scene_names()) list += (list.empty() ? "" : ", ") + std::string(known);
     throw SceneError(std::string(name), "", "there is no bundled scene of this name; there are " + list);
 }
 

@@ -6,7 +6,7 @@
 namespace nephroid::scenes {
 
 Scene load_scene(const std::string& path_or_name) {
-    const auto names = bundled_scene_names();
+    const auto names = all_bundled_scene_names();
     if (std::find(names.begin(), names.end(), path_or_name) != names.end()) return bundled_scene(path_or_name);
     if (!std::filesystem::exists(path_or_name)) {
         std::string list;

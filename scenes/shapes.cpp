@@ -96,6 +96,24 @@ Mesh make_sphere(const char* name, int material, const glm::vec3& centre, float 
     return mesh;
 }
 
+Mesh make_rippled_sphere(const char* name, int material, const glm::vec3& centre, float radius, int levels, std::span<const Ripple> ripples) {
+    Mesh mesh = make_sphere(name, material, glm::vec3(0.0f), 1.0f, levels);
+    for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
+        const glm::vec3 n = mesh.normals[k];
+        float distance = 1.0f;
+        glm::vec3 slope(0.0f);
+        for (const Ripple& ripple : ripples) {
+            const float angle = glm::dot(ripple.wave_vector, n) + ripple.phase;
+            distance += ripple.height * nephroid::cos(angle);
+            slope -= (ripple.height * nephroid::sin(angle)) * ripple.wave_vector;
+        }
+        mesh.positions[k] = centre + (radius * distance) * n;
+        // The gradient of |x| - distance(x / |x|): only the slope along the sphere counts.
+        mesh.normals[k] = unit(distance * n - (slope - glm::dot(slope, n) * n));
+    }
+    return mesh;
+}
+
 Mesh make_torus(const char* name, int material, const glm::vec3& centre, float major, float minor, int around, int across) {
     const std::vector<glm::vec2> ring = circle(around), tube = circle(across);
     Mesh mesh = named(name, material);

@@ -13,6 +13,16 @@ namespace nephroid::scenes {
 // An icosahedron whose edges are halved `levels` times: 20 * 4^levels triangles of nearly one size, no poles.
 Mesh make_sphere(const char* name, int material, const glm::vec3& centre, float radius, int levels);
 
+// A wave cos(k.n + phase) over all directions n from a sphere's middle.
+struct Ripple {
+    float height;           // a share of the radius
+    glm::vec3 wave_vector;  // radians from the middle to the surface
+    float phase;
+};
+// A sphere whose surface is drawn in and out by ripples, with the normals of what that gives: make_sphere's triangles. The
+// heights should add up to less than 1.
+Mesh make_rippled_sphere(const char* name, int material, const glm::vec3& centre, float radius, int levels, std::span<const Ripple> ripples);
+
 // Round the vertical axis through `centre`: ring radius `major`, tube radius `minor`. 2 * around * across triangles.
 Mesh make_torus(const char* name, int material, const glm::vec3& centre, float major, float minor, int around, int across);
 

@@ -35,7 +35,7 @@ struct CausticViewFitter::Band {
     double flux = 0, sum[3] = {0, 0, 0};  // flux-weighted directions or positions
     std::array<std::uint64_t, bins> across, down;
     std::uint64_t behind = 0;  // what the view cannot hold at all
-    bool outside = false;
+    bool outside = false, hidden = false;
 };
 
 CausticViewFitter::CausticViewFitter() : bands_(band_count) {}
@@ -52,13 +52,14 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
                 for (int x = 0; x < width; ++x, p += 4, f += 4) {
                     const Photon photon = photon_at(p, f);
                     if (photon.landed) visit(bands_[b], photon);
+                    else if (p[3] < 0) bands_[b].hidden = true;
                 }
             }
         });
     };
 
     // The axis: towards the middle of the flux.
-    for (Band& b : bands_) b.flux = b.sum[0] = b.sum[1] = b.sum[2] = 0, b.across.fill(0), b.down.fill(0), b.behind = 0, b.outside = false;
+    for (Band& b : bands_) b.flux = b.sum[0] = b.sum[1] = b.sum[2] = 0, b.across.fill(0), b.down.fill(0), b.behind = 0, b.outside = b.hidden = false;
     for_photons([&](Band& b, const Photon& photon) {
         glm::vec3 d = photon.position - light.position;
         if (!parallel) d = glm::normalize(d);
@@ -71,6 +72,7 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         for (int k = 0; k < 3; ++k) sum[k] += b.sum[k];
     }
     Fit fit;
+    for (const Band& b : bands_) fit.hidden = fit.hidden || b.hidden;
     if (!(flux > 0)) return fit;
     fit.empty = false;
     if (parallel) {

@@ -103,6 +103,7 @@ private:
         }
     }
 
+    // Receivers are lit by a map before the next one is begun: all share the memory of one.
     void plan_map(const CausticMapPlan& how, const std::string& name) {
         const int map = static_cast<int>(plan_.maps.size());
         plan_.maps.push_back(how);

@@ -1,6 +1,7 @@
 #include "stages/renderer.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <span>
@@ -115,12 +116,12 @@ struct Renderer::Impl : PassDraws {
     SolidLayers caster, lit_side;
     Texture occluders;
     std::shared_ptr<TracedWorld> traced;  // of exact tracing
-    Texture hidden_positions, hidden_irradiance, hidden_depth;  // of photons where the light does not see; exact tracing
+    // Of the caustic map at hand, with all that it takes: receivers are lit by it before the next one's photons are followed.
+    std::vector<Texture> photon_positions, photon_fluxes;  // of one map, or of every one (Settings::keep_photons)
+    Texture accounts, losses;  // of a band of rows of the photons
+    CausticPictures map;
+    Texture hidden_irradiance, hidden_depth;  // of photons where the light does not see; exact tracing
     CubeViews hidden_faces;
-    bool has_hidden = false;  // of the last map
-    std::vector<Texture> photon_positions, photon_fluxes;  // per map
-    Texture accounts, losses;
-    std::vector<CausticPictures> maps;
     Texture map_flux, map_sides, wide_flux, wide_sides, map_accounts, wide_accounts;
     std::vector<Buffer<mapping::VertexArea<float>>> vertex_areas;  // per mesh; variant Vertices
     hierarchical::PhotonGather gather;
@@ -200,8 +201,8 @@ struct Renderer::Impl : PassDraws {
     void draw_layers(const View& view, int m, LayerPictures& to);
     void caster_pass(const Pass& pass);
     void photon_pass(const Pass& pass);
-    void trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
-    void trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets);
+    void trace_photons(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets);
+    void trace_photons_exactly(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets);
     void caustic_receivers(const Pass& pass);
     PhotonPlacement placement(const Pass& pass, bool wide) const;
     TargetView flux_target(const Light& light, bool wide) const;
@@ -226,6 +227,8 @@ struct Renderer::Impl : PassDraws {
     ReceiverMap light_receivers(const Light& light) const;
     SolidLayers solid(const View& view, int m, const LayerPictures& from) const;
     SpecularMaterial specular_material(int m) const;
+    const Texture& positions_of(const Pass& pass) const { return photon_positions[settings.keep_photons ? static_cast<std::size_t>(pass.map) : 0]; }
+    const Texture& fluxes_of(const Pass& pass) const { return photon_fluxes[settings.keep_photons ? static_cast<std::size_t>(pass.map) : 0]; }
     int map_levels() const { return settings.technique == Technique::Hierarchical ? hierarchical::levels_of(settings.hierarchical_variant) : 1; }
     int wide_layers(const Light& light) const { return light.kind == LightKind::Directional ? 1 : 6; }
 };
@@ -270,7 +273,6 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
     if (!plan.maps.empty()) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
         if (exact()) {
-            hidden_positions = target(Format::RGBA32F, n, n, "hidden photon positions");
             hidden_irradiance = layered(Format::RGBA32F, wide, 6, "hidden caustic map");
             hidden_depth = layered(Format::D32F, wide, 6, "hidden caustic map depth");
         } else {
@@ -280,8 +282,11 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
             lit_layer = LayerPictures(n, n, 1);
             occluders = target(Format::D32F, n, n, "occluders");
         }
-        accounts = target(Format::RGBA32F, n, n, "accounts");
-        losses = target(Format::RGBA32F, n, n, "losses");
+        // A band's accounts are added up as soon as its photons have been followed. Vertices are all followed in one draw.
+        constexpr int photons_per_band = 1 << 20;
+        const int rows = settings.variant == mapping::Variant::Vertices ? n : std::min(n, photons_per_band / n);
+        accounts = target(Format::RGBA32F, n, rows, "accounts");
+        losses = target(Format::RGBA32F, n, rows, "losses");
         const int levels = map_levels();
         map_flux = layered(Format::RGBA32F, size, 1, "map flux", levels);
         map_sides = layered(Format::RGBA32F, size, 1, "map receivers");
@@ -289,12 +294,11 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
         wide_sides = layered(Format::RGBA32F, wide, 6, "wide map receivers");
         map_accounts = target(Format::RGBA32F, size, size, "map accounts");
         wide_accounts = target(Format::RGBA32F, wide, wide, "wide map accounts");
-        maps.resize(plan.maps.size());
-        for (std::size_t k = 0; k < maps.size(); ++k) {
-            maps[k].irradiance = layered(Format::RGBA32F, size, 1, "caustic map");
-            maps[k].depth = layered(Format::D32F, size, 1, "caustic map depth");
-            maps[k].wide_irradiance = layered(Format::RGBA32F, wide, 6, "wide caustic map");
-            maps[k].wide_depth = layered(Format::D32F, wide, 6, "wide caustic map depth");
+        map.irradiance = layered(Format::RGBA32F, size, 1, "caustic map");
+        map.depth = layered(Format::D32F, size, 1, "caustic map depth");
+        map.wide_irradiance = layered(Format::RGBA32F, wide, 6, "wide caustic map");
+        map.wide_depth = layered(Format::D32F, wide, 6, "wide caustic map depth");
+        for (std::size_t k = 0; k < (settings.keep_photons ? plan.maps.size() : 1); ++k) {
             photon_positions.push_back(target(Format::RGBA32F, n, n, "photon positions"));
             photon_fluxes.push_back(target(Format::RGBA32F, n, n, "photon fluxes"));
         }
@@ -386,14 +390,14 @@ bool Renderer::Impl::exceeds_view(const Light& light, const Mesh& mesh) const {
 }
 
 ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
-    ReceiverMap map;
-    map.cube = light.kind != LightKind::Directional;
-    if (map.cube) map.faces = cube_views(light.position);
-    else map.parallel = parallel_view(light);
-    map.depth = receiver_depth;
-    map.ids = receiver_ids;
-    map.size = settings.receiver_map_size;
-    return map;
+    ReceiverMap receivers;
+    receivers.cube = light.kind != LightKind::Directional;
+    if (receivers.cube) receivers.faces = cube_views(light.position);
+    else receivers.parallel = parallel_view(light);
+    receivers.depth = receiver_depth;
+    receivers.ids = receiver_ids;
+    receivers.size = settings.receiver_map_size;
+    return receivers;
 }
 
 SolidLayers Renderer::Impl::solid(const View& view, int m, const LayerPictures& from) const {
@@ -473,7 +477,7 @@ void Renderer::Impl::caster_pass(const Pass& pass) {
     }
 }
 
-void Renderer::Impl::trace_photons(const Pass& pass, const std::array<TargetView, max_render_targets>& targets) {
+void Renderer::Impl::trace_photons(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets) {
     const Light& light = world.lights[pass.light];
     mapping::TracePhotons photons;
     photons.tracer.search.solid = caster;
@@ -490,6 +494,7 @@ void Renderer::Impl::trace_photons(const Pass& pass, const std::array<TargetView
     photons.light = LightSource(light);
     photons.occluders = occluders;
     photons.variant = settings.variant;
+    photons.first_row = first_row;
     photons.branch = pass.branch;
     photons.other_branch_followed = plan.maps[pass.map].other_branch;
     if (plan.maps[pass.map].inside_branch) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
@@ -505,39 +510,41 @@ void Renderer::Impl::trace_photons(const Pass& pass, const std::array<TargetView
     }
 }
 
-void Renderer::Impl::trace_photons_exactly(const Pass& pass, const std::array<TargetView, max_render_targets>& targets) {
+void Renderer::Impl::trace_photons_exactly(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets) {
     const Light& light = world.lights[pass.light];
-    const CausticMapPlan& map = plan.maps[pass.map];
+    const CausticMapPlan& how = plan.maps[pass.map];
     TraceExactPhotons photons;
     photons.tracer.world = traced->view();
     photons.tracer.bounces = settings.bounces;
     photons.tracer.branch = pass.branch;
     if (settings.inner_reflections) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
-    photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !map.inside_branch;
+    photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !how.inside_branch;
     photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
     photons.light = LightSource(light);
     photons.view = lit_part(light, caster_view(light, world.meshes[pass.mesh]));
     photons.all_round = exceeds_view(light, world.meshes[pass.mesh]);
     photons.side = settings.photons;
+    photons.first_row = first_row;
     photons.mesh = pass.mesh;
-    photons.other_branch_followed = map.other_branch;
+    photons.other_branch_followed = how.other_branch;
     photons.lie_open = TracedWorld::lies_open(world, light);
     const Mesh& mesh = world.meshes[pass.mesh];
     photons.middle = (mesh.low + mesh.high) * 0.5f;
-    std::array<TargetView, max_render_targets> with_hidden = targets;
-    with_hidden[4] = hidden_positions.mip();
-    draw_screen("photons", photons, with_hidden);
+    draw_screen("photons", photons, targets);
 }
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
-    const std::array<TargetView, max_render_targets> targets = {photon_positions[pass.map].mip(), photon_fluxes[pass.map].mip(), accounts.mip(), losses.mip()};
-    if (exact()) trace_photons_exactly(pass, targets);
-    else trace_photons(pass, targets);
-    if (!settings.audit) return;
-    Executor& executor = device.executor();
-    const glm::dvec4 kept = sum_of(executor, accounts, row_sums), lost = sum_of(executor, losses, row_sums);
-    audit.emitted += kept.x, audit.absorbed += kept.y, audit.not_followed += kept.z, audit.correction += kept.w;
-    audit.trapped += lost.x, audit.missed += lost.y;
+    const int rows = accounts.height();
+    for (int first_row = 0; first_row < settings.photons; first_row += rows) {
+        const std::array<TargetView, max_render_targets> targets = {positions_of(pass).rows(first_row, rows), fluxes_of(pass).rows(first_row, rows), accounts.mip(), losses.mip()};
+        if (exact()) trace_photons_exactly(pass, first_row, targets);
+        else trace_photons(pass, first_row, targets);
+        if (!settings.audit) continue;
+        Executor& executor = device.executor();
+        const glm::dvec4 kept = sum_of(executor, accounts, row_sums), lost = sum_of(executor, losses, row_sums);
+        audit.emitted += kept.x, audit.absorbed += kept.y, audit.not_followed += kept.z, audit.correction += kept.w;
+        audit.trapped += lost.x, audit.missed += lost.y;
+    }
 }
 
 void Renderer::Impl::store_receiver_sides(const View& view, const TargetView& sides, const TargetView& depth) {
@@ -549,7 +556,6 @@ void Renderer::Impl::store_receiver_sides(const View& view, const TargetView& si
 
 void Renderer::Impl::caustic_receivers(const Pass& pass) {
     const Light& light = world.lights[pass.light];
-    CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
     store_receiver_sides(map.fit.view, map_sides.mip(), map.depth.mip());
     if (!map.fit.outside) return;
@@ -560,7 +566,7 @@ void Renderer::Impl::caustic_receivers(const Pass& pass) {
 
 PhotonPlacement Renderer::Impl::placement(const Pass& pass, bool wide) const {
     const Light& light = world.lights[pass.light];
-    return {photon_positions[pass.map], maps[pass.map].fit.view, wide, light.kind != LightKind::Directional, cube_views(light.position), parallel_view(light), wide ? settings.map_size / 2 : settings.map_size};
+    return {positions_of(pass), map.fit.view, wide, light.kind != LightKind::Directional, cube_views(light.position), parallel_view(light), wide ? settings.map_size / 2 : settings.map_size};
 }
 
 // All levels of a map's flux.
@@ -569,7 +575,6 @@ TargetView Renderer::Impl::flux_target(const Light& light, bool wide) const {
 }
 
 void Renderer::Impl::splat(const Pass& pass) {
-    const CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
     for (const bool wide : {false, true}) {
         if (wide && !map.fit.outside) return;
@@ -581,7 +586,7 @@ void Renderer::Impl::splat(const Pass& pass) {
         const float size = settings.sprite_size == 0 && settings.variant == mapping::Variant::Vertices ? mapping::PlacePhoton::narrowest : settings.sprite_size;
         const TargetView flux = flux_target(world.lights[pass.light], wide);
         clear(flux);
-        splat_sprites({placement(pass, wide), photon_fluxes[pass.map], log2_of(settings.photons), size}, flux);
+        splat_sprites({placement(pass, wide), fluxes_of(pass), log2_of(settings.photons), size}, flux);
     }
 }
 
@@ -598,9 +603,9 @@ void Renderer::Impl::splat_hierarchical(const Pass& pass, bool wide) {
     hierarchical::SplatSize size{settings.hierarchical_variant, settings.splat_form, settings.sprite_size, settings.splat_threshold, map_levels(), settings.discard_wide_splats && hierarchical::may_discard(settings.hierarchical_variant),
                                  {lit_side, specular_material(pass.mesh), pass.branch == Branch::Reflected}};
     if (size.one_size == 0) size.one_size = hierarchical::default_size(settings.hierarchical_variant, place.map_size, settings.photons);
-    gather.splat(*this, place, photon_fluxes[pass.map], size, flux_target(world.lights[pass.light], wide));
+    gather.splat(*this, place, fluxes_of(pass), size, flux_target(world.lights[pass.light], wide));
     if (!settings.audit || !size.discards_wide) return;
-    gather.count_discarded(*this, place, photon_fluxes[pass.map], size, accounts);
+    gather.count_discarded(*this, place, fluxes_of(pass), size, accounts);
     audit.discarded += sum_of(device.executor(), accounts, row_sums).x;
 }
 
@@ -621,7 +626,6 @@ void Renderer::Impl::resolve_layer(const Texture& flux, int levels, const Textur
 
 void Renderer::Impl::resolve(const Pass& pass) {
     const Light& light = world.lights[pass.light];
-    CausticPictures& map = maps[pass.map];
     if (map.fit.empty) return;
     resolve_layer(map_flux, map_levels(), map_sides, map.depth, map.irradiance, map.fit.view, 0, settings.map_size);
     if (!map.fit.outside) return;
@@ -632,17 +636,16 @@ void Renderer::Impl::resolve(const Pass& pass) {
 
 // Little light, and mostly none: sprites do for every technique.
 void Renderer::Impl::hidden_caustic(const Pass& pass) {
-    has_hidden = !TracedWorld::lies_open(world, world.lights[pass.light]) && sum_of(device.executor(), hidden_positions, row_sums).w > 0;
-    if (!has_hidden) return;
+    if (!map.fit.hidden) return;
     const Mesh& mesh = world.meshes[pass.mesh];
     const int size = settings.map_size / 2;
     hidden_faces = cube_views((mesh.low + mesh.high) * 0.5f);
     for (int layer = 0; layer < 6; ++layer) store_receiver_sides(hidden_faces.face[layer], wide_sides.mip(0, layer), hidden_depth.mip(0, layer));
-    PhotonPlacement place{hidden_positions, View(), true, true, hidden_faces, View(), size};
-    place.shared = false;
+    PhotonPlacement place{positions_of(pass), View(), true, true, hidden_faces, View(), size};
+    place.hidden = true;
     const TargetView flux = wide_flux.layers(0, 6);
     clear(flux);
-    splat_sprites({place, photon_fluxes[pass.map], log2_of(settings.photons), settings.sprite_size}, flux);
+    splat_sprites({place, fluxes_of(pass), log2_of(settings.photons), settings.sprite_size}, flux);
     for (int layer = 0; layer < 6; ++layer) resolve_layer(wide_flux, 1, wide_sides, hidden_depth, hidden_irradiance, hidden_faces.face[layer], layer, size);
 }
 
@@ -755,28 +758,26 @@ void Renderer::Impl::direct_light(const Pass& pass) {
 
 void Renderer::Impl::caustic_light(const Pass& pass) {
     const Light& light = world.lights[pass.light];
-    const CausticPictures& from = maps[pass.map];
-    const bool hidden = exact() && has_hidden;
-    if (from.fit.empty && !hidden) return;
-    CausticMap map;
-    map.focus = from.fit.view;
-    map.focus_irradiance = from.irradiance;
-    map.focus_depth = from.depth;
-    map.size = settings.map_size;
-    map.has_focus = !from.fit.empty;
-    map.has_wide = from.fit.outside;
-    map.has_hidden = hidden;
-    map.hidden_faces = hidden_faces;
-    map.hidden_irradiance = hidden_irradiance;
-    map.hidden_depth = hidden_depth;
-    map.wide_cube = light.kind != LightKind::Directional;
-    if (map.wide_cube) map.faces = cube_views(light.position);
-    else map.parallel = parallel_view(light);
-    map.wide_irradiance = from.wide_irradiance;
-    map.wide_depth = from.wide_depth;
-    map.wide_size = settings.map_size / 2;
+    if (map.fit.empty && !map.fit.hidden) return;
+    CausticMap from;
+    from.focus = map.fit.view;
+    from.focus_irradiance = map.irradiance;
+    from.focus_depth = map.depth;
+    from.size = settings.map_size;
+    from.has_focus = !map.fit.empty;
+    from.has_wide = map.fit.outside;
+    from.has_hidden = map.fit.hidden;
+    from.hidden_faces = hidden_faces;
+    from.hidden_irradiance = hidden_irradiance;
+    from.hidden_depth = hidden_depth;
+    from.wide_cube = light.kind != LightKind::Directional;
+    if (from.wide_cube) from.faces = cube_views(light.position);
+    else from.parallel = parallel_view(light);
+    from.wide_irradiance = map.wide_irradiance;
+    from.wide_depth = map.wide_depth;
+    from.wide_size = settings.map_size / 2;
     for (const PointPictures& p : points)
-        if (!p.positions.empty()) draw_screen("caustic light", ShadeCaustic{p.view(), map}, {caustic.mip()}, blend_additive);
+        if (!p.positions.empty()) draw_screen("caustic light", ShadeCaustic{p.view(), from}, {caustic.mip()}, blend_additive);
 }
 
 void Renderer::Impl::downsample() {
@@ -792,14 +793,14 @@ void Renderer::Impl::run(const Pass& pass) {
         case PassKind::CasterLayers: return caster_pass(pass);
         case PassKind::Photons: return photon_pass(pass);
         case PassKind::FitCausticView:
-            maps[pass.map].fit = fitter.fit(device.executor(), photon_positions[pass.map], photon_fluxes[pass.map], world.lights[pass.light], scene_centre(), reach);
+            map.fit = fitter.fit(device.executor(), positions_of(pass), fluxes_of(pass), world.lights[pass.light], scene_centre(), reach);
             return;
         case PassKind::CausticReceivers: return caustic_receivers(pass);
         case PassKind::ValidityPyramid:
-            if (!maps[pass.map].fit.empty) gather.build_pyramid(*this, placement(pass, false), photon_fluxes[pass.map]);
+            if (!map.fit.empty) gather.build_pyramid(*this, placement(pass, false), fluxes_of(pass));
             return;
         case PassKind::TraversePhotons:
-            if (!maps[pass.map].fit.empty) gather.traverse(*this, maps[pass.map].fit.outside);
+            if (!map.fit.empty) gather.traverse(*this, map.fit.outside);
             return;
         case PassKind::SplatPhotons: return splat(pass);
         case PassKind::ResolveCaustic: return resolve(pass);
@@ -829,8 +830,14 @@ const Faults& Renderer::faults() const { return impl_->faults; }
 const FramePlan& Renderer::plan() const { return impl_->plan; }
 const std::vector<PassRecord>& Renderer::records() const { return impl_->records; }
 const EnergyAudit& Renderer::audit() const { return impl_->audit; }
-const Texture& Renderer::photon_positions(int map) const { return impl_->photon_positions[static_cast<std::size_t>(map)]; }
-const Texture& Renderer::photon_fluxes(int map) const { return impl_->photon_fluxes[static_cast<std::size_t>(map)]; }
+const Texture& Renderer::photon_positions(int map) const {
+    assert(impl_->settings.keep_photons);
+    return impl_->photon_positions[static_cast<std::size_t>(map)];
+}
+const Texture& Renderer::photon_fluxes(int map) const {
+    assert(impl_->settings.keep_photons);
+    return impl_->photon_fluxes[static_cast<std::size_t>(map)];
+}
 void Renderer::observe(Observer* observer) { impl_->observer = observer; }
 void Renderer::listen(ProgressListener* listener) { impl_->listener = listener; }
 

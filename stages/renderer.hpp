@@ -1,7 +1,7 @@
 // Renders a world: runs the passes of a frame plan on the pipeline.
 //
 // Everything that a frame needs is allocated when the renderer is made; frames after the first allocate nothing, also when
-// lights and camera move in between.
+// lights and camera move in between. Caustic maps come one after the other, and take the memory of one.
 #pragma once
 #include <memory>
 #include <string>
@@ -60,7 +60,8 @@ public:
     Picture picture() const;
     const std::vector<PassRecord>& records() const;  // one per pass of the plan
     const EnergyAudit& audit() const;                // of the last frame
-    // For tests: the photons of a caustic map, [photons^2] texels: landing place and 1 if landed; flux, W.
+    // For tests, with Settings::keep_photons: the photons of a caustic map, [photons^2] texels: landing place and 1 if landed, -1
+    // if where its light does not see; flux, W.
     const Texture& photon_positions(int map) const;
     const Texture& photon_fluxes(int map) const;
 

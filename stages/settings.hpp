@@ -37,6 +37,7 @@ struct Settings {
     bool inner_reflections = true;  // follows what surfaces reflect in part inside objects
     int solid_layers = 4;      // pairs of front and back faces looked at per object; 1: as Wyman (2005)
     bool audit = true;         // keep the energy's accounts
+    bool keep_photons = false; // of every caustic map until the next frame, for who wants to look at them
     bool leave_out = true;     // passes that change nothing; off only to see that they do not
 };
 

@@ -48,18 +48,32 @@ int parse_photons(const std::string& text) {
     return side;
 }
 
+// A photon's place and flux; in image space a texel of every layer of its object; lists and a pyramid to find it by. However
+// many lights there are.
+double bytes_per_photon(const stages::Settings& s) {
+    double bytes = 32;
+    if (s.tracing == stages::Tracing::ImageSpace) bytes += 40 * (s.solid_layers + 1) + 4;
+    if (s.technique == stages::Technique::Hierarchical && stages::hierarchical::traverses(s.hierarchical_variant)) bytes += stages::hierarchical::merges(s.hierarchical_variant) ? 24 : 12;
+    return bytes;
+}
+
 // A system that runs out of memory ends the program, or another one, without a word.
 void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
     const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const scenes::Material& m) { return m.kind() != scenes::SurfaceKind::Lambert; });
-    // Measured: what a sample's terms, positions and, behind something specular, its depth layers take.
-    const double bytes_per_sample = specular ? 200 : 100;
+    // Measured: what a sample's terms, positions and, behind something specular, its depth layers take; what a texel of a map
+    // takes, its levels, receivers and the wide map's share included.
+    const double bytes_per_sample = specular ? 200 : 100, bytes_per_texel = 190;
     const int width = s.width * s.samples_side, height = s.height * s.samples_side;
-    const double needed = static_cast<double>(width) * height * bytes_per_sample;
-    const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double samples = static_cast<double>(width) * height * bytes_per_sample;
+    const double photons = specular ? static_cast<double>(s.photons) * s.photons * bytes_per_photon(s) : 0, texels = specular ? static_cast<double>(s.map_size) * s.map_size * bytes_per_texel : 0;
+    const double needed = samples + photons + texels, there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed <= there) return;
+    // The option that asks for most of it.
+    const std::string what = samples >= std::max(photons, texels) ? "--size: " + std::to_string(width) + " x " + std::to_string(height) + " samples"
+                             : photons >= texels                  ? "--photons: " + std::to_string(s.photons) + "^2 photons"
+                                                                  : "--map-size: " + std::to_string(s.map_size) + "^2 texels";
     constexpr double gib = 1073741824.0;
-    throw std::runtime_error("--size: " + std::to_string(width) + " x " + std::to_string(height) + " samples need some " + std::to_string(std::lround(needed / gib)) +
-                             " GiB of memory, and there are " + std::to_string(std::lround(there / gib)));
+    throw std::runtime_error(what + " need some " + std::to_string(std::lround(needed / gib)) + " GiB of memory, and there are " + std::to_string(std::lround(there / gib)));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void parse_size(const std::string& text, int& width, int& height) {
 void SceneOptions::add_to(CLI::App& c) {
     c.add_option("scene", scene, "A glTF or GLB file, or a bundled scene: " + [] {
         std::string names;
-        for (const std::string_view name : scenes::bundled_scene_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+        for (const std::string_view name : scenes::all_bundled_scene_names()) names += (names.empty() ? "" : ", ") + std::string(name);
         return names;
     }() + " (default: the first)");
     c.add_option("--size", size, "Of the picture, WIDTHxHEIGHT (default: 768 high, as wide as the camera's aspect)");

@@ -130,6 +130,7 @@ void table_3(const TablesArguments& a, Device& device) {
     for (const int photons : a.photons) {
         stages::Settings s = settings_of(a, scene, photons, Variant::Hierarchical);
         s.map_size = 64;
+        s.keep_photons = true;
         stages::Renderer renderer(device, built.world, s);
         throw_faults(renderer.faults());
         throw_faults(renderer.render());

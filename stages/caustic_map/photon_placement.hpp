@@ -14,7 +14,15 @@ struct PhotonPlacement {
     CubeViews faces;
     View parallel;
     int map_size = 0;   // of the map that is drawn into
-    bool shared = true;  // between the focus and the wide map; else all photons are this map's
+    // Only photons that the light does not see, all of them this map's; else those that it sees, shared between the focus and
+    // the wide map.
+    bool hidden = false;
+
+    // From a position's w: 1 where the light sees the landing place, -1 where it does not, 0 where there is none.
+    template <class F>
+    LaneMask<F> landed(F flag) const {
+        return hidden ? flag < F(0.0f) : flag > F(0.0f);
+    }
 
     // A place on a map: x and y in texels, down from the top left.
     template <class F>
@@ -51,7 +59,7 @@ struct PhotonPlacement {
     // How much of it is this map's.
     template <class F>
     F share(const vec3<F>& position) const {
-        if (!shared) return F(1.0f);
+        if (hidden) return F(1.0f);
         const F focused = focus_share(position);
         return wide ? F(1.0f) - focused : focused;
     }
@@ -70,7 +78,7 @@ struct PhotonPlacement {
             const vec4<F> photon = positions.fetch<F>(x + LaneInt<F>(side * along_x), y + LaneInt<F>(side * along_y));
             const Place<F> p = place(vec3<F>(photon));
             const F dx = p.x - at.x, dy = p.y - at.y, squared = dx * dx + dy * dy;
-            const LaneMask<F> is_nearer = (photon.w > F(0.0f)) & p.in_front & (p.layer == at.layer) & (squared < nearer.squared_distance);
+            const LaneMask<F> is_nearer = landed(photon.w) & p.in_front & (p.layer == at.layer) & (squared < nearer.squared_distance);
             nearer = {select(is_nearer, dx, nearer.x), select(is_nearer, dy, nearer.y), select(is_nearer, squared, nearer.squared_distance)};
         }
         nearer.squared_distance = select(nearer.squared_distance < F(none_there), nearer.squared_distance, F(0.0f));

@@ -16,21 +16,23 @@ struct TraceExactPhotons {
     View view;       // of the object from the light; what the light reaches of it
     bool all_round = false;  // instead of the view: all directions
     int side = 1;    // photons along an edge
+    int first_row = 0;  // of the band that is drawn
     int mesh = 0;    // the object
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
     bool lie_open = false;  // no receiver hides any part of another from the light
     glm::vec3 middle{0.0f};  // of the object
 
-    // Targets as TracePhotons', and positions once more, of photons that the light does not see and the object's middle does.
+    // Targets as TracePhotons'; -1 with the landing place of photons that the light does not see and the object's middle does.
     template <class F>
-    std::array<vec4<F>, 5> operator()(const PixelInput<F>& pixel) const {
-        const F u = pixel.position.x * F(1.0f / static_cast<float>(side)), v = pixel.position.y * F(1.0f / static_cast<float>(side));
+    std::array<vec4<F>, 4> operator()(const PixelInput<F>& pixel) const {
+        const F row = pixel.position.y + F(static_cast<float>(first_row));
+        const F u = pixel.position.x * F(1.0f / static_cast<float>(side)), v = row * F(1.0f / static_cast<float>(side));
         const vec3<F> corner = octahedron_point(u * F(2.0f) - F(1.0f), v * F(2.0f) - F(1.0f));
         ExactTracer::Ray<F> ray;
         ray.position = view.perspective ? broadcast<F>(view.origin) : view.position(u, v, F(1.0f));
         ray.direction = glm::normalize(all_round ? corner : view.ray(u, v));
         ray.active = LaneMask<F>(true);
-        ray.index = as_uint(to_int_in_range(pixel.position.y) * side + to_int_in_range(pixel.position.x));
+        ray.index = as_uint(to_int_in_range(row) * side + to_int_in_range(pixel.position.x));
         ray.by_chance = LaneMask<F>(tracer.chance_from_start);
         LaneMask<F> lit;
         const vec3<F> start = tracer.begin(ray, mesh, lit);
@@ -58,9 +60,9 @@ struct TraceExactPhotons {
         const vec3<F> emitted = light.emission(start) * (all_round ? solid_angle : view.texel_measure(u, v, side, side));
         const vec3<F> flux = select(ray.landed, emitted * ray.ledger.carried, vec3<F>(F(0.0f)));
         const auto total = [&](const vec3<F>& share) { return select(lit, emitted.x * share.x + emitted.y * share.y + emitted.z * share.z, F(0.0f)); };
-        return {vec4<F>(ray.position, select(shown, F(1.0f), F(0.0f))), vec4<F>(flux, F(0.0f)),
+        return {vec4<F>(ray.position, select(shown, F(1.0f), select(hidden, F(-1.0f), F(0.0f)))), vec4<F>(flux, F(0.0f)),
                 vec4<F>(total(ray.ledger.started), total(ray.ledger.absorbed), total(ray.ledger.not_followed), total(ray.ledger.correction)),
-                vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f)), vec4<F>(ray.position, select(hidden, F(1.0f), F(0.0f)))};
+                vec4<F>(total(ray.ledger.trapped), total(ray.ledger.missed), F(0.0f), F(0.0f))};
     }
 };
 

@@ -96,7 +96,9 @@ void PhotonGather::splat(PassDraws& draws, const PhotonPlacement& placement, con
 
 void PhotonGather::count_discarded(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const Texture& accounts) const {
     draws.clear(accounts.mip());
-    draws.draw(Program{FindDiscarded{{placement, fluxes, size}, side_}, CountDiscarded{}}, points("discarded photons"), {.vertices = streamed(photons_[placement.wide ? 1 : 0]), .render_targets = {accounts.mip()}});
+    PipelineState state = points("discarded photons");
+    state.blend = {blend_additive};
+    draws.draw(Program{FindDiscarded{{placement, fluxes, size}, side_, accounts.height()}, CountDiscarded{}}, state, {.vertices = streamed(photons_[placement.wide ? 1 : 0]), .render_targets = {accounts.mip()}});
 }
 
 void PhotonGather::sum_levels(PassDraws& draws, const Texture& flux, int layer, int levels) {

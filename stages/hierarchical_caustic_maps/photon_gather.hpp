@@ -19,7 +19,7 @@ public:
     void traverse(PassDraws& draws, bool wide);
     // Splats them into a map's levels, which this clears.
     void splat(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const TargetView& flux);
-    // The flux of what `splat` left out, each photon's on its own texel; [photons^2], RGBA32F.
+    // The flux of what `splat` left out; accounts: RGBA32F, as wide as the photon buffer and a power of two high.
     void count_discarded(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const Texture& accounts) const;
     // Sums the levels of a layer down to the two finest.
     static void sum_levels(PassDraws& draws, const Texture& flux, int layer, int levels);

@@ -34,7 +34,7 @@ struct TransformPhotons {
     TransformedPhoton<F> photon(LaneInt<F> x, LaneInt<F> y) const {
         const vec4<F> texel = placement.positions.fetch<F>(x, y);
         TransformedPhoton<F> out{};
-        out.drawn = texel.w > F(0.0f);
+        out.drawn = placement.landed(texel.w);
         if (none(out.drawn)) return out;
         const vec3<F> position(texel);
         const F share = placement.share(position);
@@ -102,7 +102,7 @@ struct DepositSplat {
     }
 };
 
-// The flux of what is discarded, each on its own texel of the photon buffer's accounts: sum over the channels, W.
+// The flux of what is discarded, added up where the photon buffer's accounts keep it: sum over the channels, W.
 template <class F>
 struct DiscardedPhoton {
     vec4<F> position;
@@ -111,12 +111,12 @@ struct DiscardedPhoton {
 };
 struct FindDiscarded {
     TransformPhotons transform;
-    int side;  // of the buffer
+    int side, rows;  // of the buffer; of the accounts, a power of two, after which they begin anew
     template <class F>
     DiscardedPhoton<F> operator()(const Node<F>& node) const {
         const TransformedPhoton<F> p = transform.photon<F>(node.x(), node.y());
-        const F scale(2.0f / static_cast<float>(side));
-        const vec4<F> texel((to_float(node.x()) + F(0.5f)) * scale - F(1.0f), F(1.0f) - (to_float(node.y()) + F(0.5f)) * scale, F(0.5f), F(1.0f));
+        const F across(2.0f / static_cast<float>(side)), down(2.0f / static_cast<float>(rows));
+        const vec4<F> texel((to_float(node.x()) + F(0.5f)) * across - F(1.0f), F(1.0f) - (to_float(node.y() & LaneInt<F>(rows - 1)) + F(0.5f)) * down, F(0.5f), F(1.0f));
         return {select(p.drawn & p.size.discarded, texel, vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f))), p.flux.x + p.flux.y + p.flux.z};
     }
 };

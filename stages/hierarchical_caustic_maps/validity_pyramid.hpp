@@ -26,7 +26,7 @@ struct MarkPhotons {
         for (int k = 0; k < 4; ++k) {
             const vec4<F> photon = focus.positions.fetch<F>(child_column<F>(x, k), child_row<F>(y, k));
             const F share = focus.focus_share(vec3<F>(photon));
-            const LaneMask<F> landed = photon.w > F(0.0f);
+            const LaneMask<F> landed = focus.landed(photon.w);
             bits = bits | select(landed & (share > F(0.0f)), LaneUint<F>(1u << k), LaneUint<F>(0u));
             bits = bits | select(landed & (share < F(1.0f)), LaneUint<F>(1u << (wide_bits + k)), LaneUint<F>(0u));
         }

@@ -25,16 +25,18 @@ struct TracePhotons {
     Variant variant = Variant::TwoSided;
     Branch branch = Branch::Refracted;
     bool other_branch_followed = true;  // at the first surface, by a pass of its own
+    int first_row = 0;  // of the band of the photon buffer that is drawn
 
     // Targets: position of the landing place, 1 if it landed; flux, W; then, sums over the channels, W:
     // (emitted, absorbed, not followed, correction), (trapped, missed, 0, 0).
     template <class F>
     std::array<vec4<F>, 4> operator()(const PixelInput<F>& pixel) const {
-        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
+        const F row = pixel.position.y + F(static_cast<float>(first_row));
+        const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(row);
         const F nearness = lit_side.front_depth.fetch<F>(x, y, LaneInt<F>(0)).x;
         const LaneMask<F> lit = (nearness > F(0.0f)) & (nearness > occluders.fetch<F>(x, y).x);
         if (none(lit)) return {};
-        const F u = pixel.position.x * F(1.0f / static_cast<float>(lit_side.width)), v = pixel.position.y * F(1.0f / static_cast<float>(lit_side.height));
+        const F u = pixel.position.x * F(1.0f / static_cast<float>(lit_side.width)), v = row * F(1.0f / static_cast<float>(lit_side.height));
         const vec3<F> start = lit_side.view.position(u, v, nearness), direction = glm::normalize(lit_side.view.ray(u, v));
         const vec3<F> emitted = light.emission(start) * lit_side.view.texel_measure(u, v, lit_side.width, lit_side.height);
         const vec4<F> packed = lit_side.front_normals.fetch<F>(x, y, LaneInt<F>(0));

@@ -61,7 +61,7 @@ struct PlacePhoton {
         const LaneInt<F> k = as_int(ids.vertex_id), x = k & LaneInt<F>((1 << log2_side) - 1), y = k >> log2_side;
         const vec4<F> photon = placement.positions.fetch<F>(x, y);
         PhotonSprite<F> out{vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f)), LaneInt<F>(0), F(1.0f), vec3<F>(F(0.0f))};  // nowhere
-        LaneMask<F> drawn = photon.w > F(0.0f);
+        LaneMask<F> drawn = placement.landed(photon.w);
         if (none(drawn)) return out;
         const vec3<F> position(photon);
         const F share = placement.share(position);

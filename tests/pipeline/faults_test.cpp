@@ -94,6 +94,10 @@ const std::vector<Case>& cases() {
         {{"render_targets[1] names layers that the texture does not have"}, [](Scene& s) { s.call.render_targets[1] = s.color[1].mip(0, 3); }},
         {{"render_targets[1] names layers that the texture does not have"}, [](Scene& s) { s.call.render_targets[1].first_layer = -1; }},
         {{"depth_target names layers that the texture does not have"}, [](Scene& s) { s.call.depth_target = s.depth.mip(0, 7); }},
+        {{"render_targets[1] names rows that the texture does not have"}, [](Scene& s) { s.call.render_targets[1] = s.color[1].rows(1, s.color[1].height()); }},
+        {{"render_targets[1] names rows that the texture does not have"}, [](Scene& s) { s.call.render_targets[1] = s.color[1].rows(-1, s.color[1].height()); }},
+        {{"render_targets[1] names rows that the texture does not have"}, [](Scene& s) { s.call.render_targets[1].first_row = 1; }},
+        {{"render_targets[2] must be as high as the other targets"}, [](Scene& s) { s.call.render_targets[2] = s.color[2].rows(1, 2); }},
         {{"render_targets[1] must be as wide as the other targets", "render_targets[1] must be as high as the other targets"}, [](Scene& s) { s.call.render_targets[1] = s.color[1].mip(1); }},
         {{"depth_target must be as wide as the other targets", "depth_target must be as high as the other targets"}, [](Scene& s) { s.call.depth_target = s.depth.mip(2); }},
         {{"render_targets[2] must have as many layers as the other targets"}, [](Scene& s) { s.call.render_targets[2] = s.color[2].layers(0, 2); }},
@@ -241,6 +245,9 @@ TEST_CASE("views that overlap are refused, views side by side are not") {
     CHECK(faults_with(texture.mip(1, 0), texture.mip(1, 0), texture.mip(1, 0), texture.mip(1, 3)).size() == 3);
     CHECK(faults_with(texture.layers(0, 2), texture.layers(1, 2), texture.layers(2, 2), texture.layers(2, 2)).size() == 4);
     CHECK(faults_with({&texture, 0, 2, 0, 1}, {&texture, 0, 2, 1, 1}, {&texture, 0, 2, 2, 1}, {&texture, 0, 2, 3, 1}).empty());
+    CHECK(faults_with(texture.rows(0, 4), texture.rows(4, 4), texture.rows(8, 4), texture.rows(12, 4)).empty());
+    CHECK(faults_with(texture.rows(0, 4), texture.rows(3, 4), texture.rows(8, 4), texture.rows(12, 4)).size() == 1);
+    CHECK(faults_with({&texture, 0, 2, 0, 1, 0, 4}, {&texture, 0, 2, 1, 1}, {&texture, 0, 2, 2, 1}, {&texture, 0, 2, 3, 1}).size() == 4);  // rows of several levels; of another height than all others
 }
 
 TEST_CASE("numbers as large as there are do not get past the checks") {
@@ -255,6 +262,7 @@ TEST_CASE("numbers as large as there are do not get past the checks") {
                 if (alone.draw(flat_program(), {}, {.vertices = buffer, .render_targets = {target.mip(0, INT_MAX)}}).faults.empty()) _exit(4);
                 if (alone.clear(TargetView{&target, 0, INT_MAX, 0, 1}, glm::vec4(0)).empty()) _exit(5);
                 if (alone.clear(TargetView{&target, 1, INT_MAX, 1, INT_MAX}, glm::vec4(0)).empty()) _exit(6);
+                if (alone.clear(target.rows(level, layer ? layer : 1), glm::vec4(0)).empty()) _exit(7);
             });
             CHECK_MESSAGE(ended.empty(), "level ", level, ", layer ", layer, ": ", ended);
         }

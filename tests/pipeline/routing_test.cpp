@@ -124,6 +124,45 @@ TEST_CASE("a view of smaller levels has its viewport in pixels of its first leve
     }
 }
 
+TEST_CASE("a band of rows is drawn into as a target of its height is, and the rows round it stay") {
+    Random random(16);
+    for (int round = 0; round < rounds(6, 60); ++round) {
+        const int width = random.integer(1, 300), height = random.integer(1, 400), first = random.integer(0, height - 1), count = random.integer(1, height - first);
+        // The band's counterparts are whole textures: all targets of a draw are of one size.
+        const Texture tall = make_target(Format::R32F, width, height), tall_depth = make_target(Format::D32F, width, height);
+        const Texture low = make_target(Format::R32F, width, count), low_depth = make_target(Format::D32F, width, count);
+        std::vector<Vertex<float>> vertices;
+        const Frame frame{0, 0, static_cast<double>(width), static_cast<double>(count)};
+        for (int k = 0; k < 60; ++k)
+            for (const GridPoint& c : random_in(random, width, count).corner) vertices.push_back({clip_position(frame, c, 1.0f, static_cast<float>(random.integer(1, 7)) / 8), glm::vec4(1)});
+        const Buffer<Vertex<float>> buffer(vertices);
+        PipelineState state = counting_state();
+        state.depth = depth_less;
+        for (const int lanes : lane_widths()) {
+            for (const int threads : {1, 3}) {
+                Device& d = device(lanes, threads);
+                must(d.clear(tall.mip(), glm::vec4(9)));
+                must(d.clear(tall_depth.mip(), glm::vec4(0.25f)));
+                must(d.clear(tall.rows(first, count), glm::vec4(0)));
+                must(d.clear(tall_depth.rows(first, count), glm::vec4(1)));
+                must(d.clear(low.mip(), glm::vec4(0)));
+                must(d.clear(low_depth.mip(), glm::vec4(1)));
+                const PipelineStatistics whole = statistics_of(d.draw(flat_program(), state, {.vertices = buffer, .render_targets = {low.mip()}, .depth_target = low_depth.mip()}));
+                CHECK(statistics_of(d.draw(flat_program(), state, {.vertices = buffer, .render_targets = {tall.rows(first, count)}, .depth_target = tall_depth.rows(first, count)})) == whole);
+                int wrong = 0;
+                const Picture drawn = read(tall), drawn_depth = read(tall_depth), wanted = read(low), wanted_depth = read(low_depth);
+                for (int y = 0; y < height; ++y) {
+                    for (int x = 0; x < width; ++x) {
+                        const bool inside = y >= first && y < first + count;
+                        wrong += drawn.at(x, y) != (inside ? wanted.at(x, y - first) : 9.0f) || drawn_depth.at(x, y) != (inside ? wanted_depth.at(x, y - first) : 0.25f);
+                    }
+                }
+                CHECK_MESSAGE(wrong == 0, wrong, " pixels of ", width, " x ", height, ", rows ", first, " to ", first + count, ", ", lanes, " lanes, ", threads, " threads");
+            }
+        }
+    }
+}
+
 TEST_CASE("viewport and scissor shrink with the level") {
     Random random(13);
     const Texture texture = make_target(Format::R32F, 160, 96, 2, 4);

@@ -106,12 +106,15 @@ TEST_CASE("the list of bundled scenes") {
     CHECK(std::vector<std::string>(names.begin(), names.end()) ==
           std::vector<std::string>{"glass-sphere", "mirror-ring", "pool", "glass-torus", "sphere-in-fog", "sphere-above-water", "prism",
                                    "wine-glass", "closed-box"});
+    const auto all = all_bundled_scene_names();
+    CHECK(std::equal(names.begin(), names.end(), all.begin()));
+    CHECK(std::vector<std::string>(all.begin() + static_cast<std::ptrdiff_t>(names.size()), all.end()) == std::vector<std::string>{"refractor-room"});
     CHECK_THROWS_AS(bundled_scene("Glass-Sphere"), SceneError);
     CHECK_THROWS_AS(bundled_scene(""), SceneError);
 }
 
 TEST_CASE("every bundled scene is sound and has what a caustic needs") {
-    for (const std::string_view name : bundled_scene_names()) {
+    for (const std::string_view name : all_bundled_scene_names()) {
         const Scene scene = bundled_scene(name);
         CAPTURE(scene.name);
         CHECK(scene.name == name);
@@ -231,6 +234,35 @@ TEST_CASE("the closed box is sealed, with lights outside and camera and glass in
         if (light.type != LightType::Directional) CHECK_FALSE(is_inside(light.position));
 }
 
+TEST_CASE("the refractor's room has two lamps in it and a closed body of some hundred thousand triangles") {
+    const Scene scene = bundled_scene("refractor-room");
+    const Mesh& refractor = mesh_named(scene, "refractor");
+    CHECK(refractor.indices.size() / 3 == 20 * 16384);
+    CHECK(is_closed(refractor));
+    const double ball = 4.0 / 3 * pi * 0.55 * 0.55 * 0.55;
+    CHECK(volume(refractor) > 0.9 * ball);
+    CHECK(volume(refractor) < 1.1 * ball);
+    CHECK(worst_agreement(refractor) > 0.999f);  // smooth
+    CHECK(scene.materials[static_cast<std::size_t>(refractor.material)].kind() == SurfaceKind::Dielectric);
+
+    Mesh walls = mesh_named(scene, "room");
+    for (const char* side : {"left wall", "right wall"}) {
+        const Mesh& wall = mesh_named(scene, side);
+        for (const std::uint32_t index : wall.indices) walls.indices.push_back(static_cast<std::uint32_t>(walls.positions.size()) + index);
+        walls.positions.insert(walls.positions.end(), wall.positions.begin(), wall.positions.end());
+    }
+    CHECK(is_closed(walls));
+    const Bounds room = bounds(walls);
+    const auto is_inside = [&](const glm::vec3& p) { return p.x > room.low.x && p.y > room.low.y && p.z > room.low.z && p.x < room.high.x && p.y < room.high.y && p.z < room.high.z; };
+    REQUIRE(scene.lights.size() == 2);
+    for (const Light& light : scene.lights) {
+        CHECK(light.type == LightType::Point);
+        CHECK(is_inside(light.position));
+    }
+    CHECK(is_inside(glm::vec3(scene.cameras[0].world_from_camera[3])));
+    for (const glm::vec3& p : refractor.positions) REQUIRE(is_inside(p));
+}
+
 TEST_CASE("the prism's beam passes at least deviation to the table") {
     const Scene scene = bundled_scene("prism");
     const Light& spot = scene.lights[0];
@@ -260,8 +292,9 @@ TEST_CASE("bundled scenes have the same bits everywhere") {
         {"glass-sphere", 0x12d187ee0b2838aa}, {"mirror-ring", 0x600ca146703ea861},   {"pool", 0xe07174a982649cc0},
         {"glass-torus", 0x8bad373fe99677c3},  {"sphere-in-fog", 0xdb7efe85230d5fa8}, {"sphere-above-water", 0xd7e1c73502b3e554},
         {"prism", 0x6819a4f113cec878},        {"wine-glass", 0x38551bc031a2a4b1},    {"closed-box", 0xdedafe3fc54825a4},
+        {"refractor-room", 0x205aae3ed89e47c5},
     };
-    for (const std::string_view name : bundled_scene_names()) {
+    for (const std::string_view name : all_bundled_scene_names()) {
         CAPTURE(std::string(name));
         REQUIRE(golden.contains(name));
         CHECK(hash(bundled_scene(name)) == golden.at(name));

@@ -158,6 +158,6 @@ TEST_CASE("a bundled name, a file, or a line that says what there is") {
     CHECK(load_scene("prism").name == "prism");
     CHECK(line_of("prisms") ==
           "prisms: there is no such file, nor a bundled scene of this name (glass-sphere, mirror-ring, pool, glass-torus, sphere-in-fog, "
-          "sphere-above-water, prism, wine-glass, closed-box)");
+          "sphere-above-water, prism, wine-glass, closed-box, refractor-room)");
     CHECK(line_of("/") == "/: not a regular file");
 }

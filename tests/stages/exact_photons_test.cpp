@@ -91,6 +91,7 @@ TEST_CASE("photons land where two refractions by a ball take them, with what Fre
     scene.meshes.push_back(scenes::make_sphere("ball", add_glass(scene, static_cast<float>(ior)), {0, static_cast<float>(height), 0}, static_cast<float>(radius), 6));
     add_sun(scene);
     stages::Settings settings = exact();
+    settings.keep_photons = true;
     const Rendered r = render(device, scene, settings);
     REQUIRE(r.renderer->plan().maps[0].branch == stages::Branch::Refracted);
     const int side = settings.photons;
@@ -168,6 +169,7 @@ TEST_CASE("a mirror's light goes through glass, and both take their share") {
     add_sun(scene, sun);
     stages::Settings settings = exact();
     settings.bounces = 64;
+    settings.keep_photons = true;
     const Rendered r = render(device, scene, settings);
     const stages::EnergyAudit& audit = r.renderer->audit();
     const double reflectance = std::pow(0.4 / 2.4, 2), transmittance = std::exp(-2.0 * 0.2);

@@ -23,6 +23,10 @@ bool all_levels() {
     return level && std::strcmp(level, "all") == 0;
 }
 
+stages::Settings keeping_photons(stages::Settings s) {
+    s.keep_photons = true;
+    return s;
+}
 stages::Settings hierarchical_settings(stages::Settings s, Variant variant) {
     s.technique = stages::Technique::Hierarchical;
     s.hierarchical_variant = variant;
@@ -37,7 +41,7 @@ struct PhotonBuffer {
     stages::Light light;
     float reach;
 
-    PhotonBuffer(Device& device, const char* scene, int photons, int map = 0) : rendered(render(device, scenes::bundled_scene(scene), small(16, 12, photons, 64))) {
+    PhotonBuffer(Device& device, const char* scene, int photons, int map = 0) : rendered(render(device, scenes::bundled_scene(scene), keeping_photons(small(16, 12, photons, 64)))) {
         const stages::World& world = rendered.built.world;
         positions = &rendered.renderer->photon_positions(map);
         fluxes = &rendered.renderer->photon_fluxes(map);
@@ -274,6 +278,33 @@ TEST_CASE("photons that converge are combined") {
     CHECK(one_texel);
     std::sort(covered.begin(), covered.end());
     CHECK(covered == each.photons);
+}
+
+TEST_CASE("a room with two lamps and a refractor of hundreds of thousands of triangles: accounts close, threads change nothing, both lamps shine through it") {
+    const scenes::Scene scene = scenes::bundled_scene("refractor-room");
+    for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+        CAPTURE(static_cast<int>(tracing));
+        stages::Settings settings = hierarchical_settings(small(48, 36, 128, 128), Variant::Varying);
+        settings.tracing = tracing;
+        Device one({.threads = 1}), two({.threads = 2});
+        const Rendered r = render(one, scene, settings), again = render(two, scene, settings);
+        CHECK(r.renderer->plan().maps.size() == 6);
+        CHECK(r.renderer->audit().imbalance() <= 1e-4);
+        CHECK(r.renderer->audit().deposited > 0.7 * r.renderer->audit().emitted);
+        CHECK(r.direct == again.direct);
+        CHECK(r.caustic == again.caustic);
+        CHECK(r.emission == again.emission);
+        double all = 0;
+        for (const int off : {0, 1}) {
+            scenes::Scene dark = scene;
+            dark.lights[static_cast<std::size_t>(off)].intensity = glm::vec3(0);
+            const Rendered alone = render(two, dark, settings);
+            const double lit = alone.sum(alone.caustic).y;
+            CHECK(lit > 0.25 * r.sum(r.caustic).y);
+            all += lit;
+        }
+        CHECK(all == doctest::Approx(r.sum(r.caustic).y).epsilon(0.05).scale(0));
+    }
 }
 
 TEST_CASE("levels save texels: one photon to four texels' edge") {

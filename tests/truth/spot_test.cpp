@@ -48,7 +48,9 @@ TEST_CASE("the radii that hold 25, 50 and 90 % of the flux, and its centroid, ar
         const std::string text(c.scene);
         CAPTURE(text);
         const scenes::Scene scene = scenes::bundled_scene(c.scene);
-        const Rendered ours = render(device, scene, small(32, 24, 1024, 1024));
+        stages::Settings settings = small(32, 24, 1024, 1024);
+        settings.keep_photons = true;
+        const Rendered ours = render(device, scene, settings);
         const oracle::Spot spot = oracle::measure_spot(landings(*ours.renderer, c.branch));
         oracle::Options options;
         options.photons = 3'000'000;

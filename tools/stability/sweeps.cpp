@@ -198,7 +198,8 @@ private:
     }
 
     // Where the mirror's photons land, against where they ought to.
-    void landing(const Shelf& shelf, const stages::Settings& settings) {
+    void landing(const Shelf& shelf, stages::Settings settings) {
+        settings.keep_photons = true;
         SceneRenderer still(device_, shelf.scene);
         const stages::World& world = still.world();
         stages::Renderer renderer(device_, world, settings);

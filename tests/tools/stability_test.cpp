@@ -408,8 +408,8 @@ TEST_CASE("stability: a table, JSON, and exit code 1 where a figure leaves its r
     const Folder folder;
     const std::vector<std::string> small{"--size", "64x48", "--samples", "1", "--photons", "16^2", "--map-size", "64", "--truth-photons", "20000"};
     std::vector<std::string> good{"stability", "prism", "--sweep", "scale", "-o", "good.json", "--pictures", "."};
-    // So few photons are no focus.
-    std::vector<std::string> bad{"stability", "--sweep", "focus", "-o", "bad.json"};
+    // So few photons are no caustic.
+    std::vector<std::string> bad{"stability", "--sweep", "far", "-o", "bad.json"};
     good.insert(good.end(), small.begin(), small.end());
     bad.insert(bad.end(), small.begin(), small.end());
     const std::vector<Outcome> outcomes = run_all(folder, {good, bad});
@@ -427,7 +427,7 @@ TEST_CASE("stability: a table, JSON, and exit code 1 where a figure leaves its r
     CHECK(j["outside"] == 0);
     CHECK(outcomes[1].code == 1);
     CHECK(lines_of(outcomes[1].err).size() == 1);
-    CHECK(outcomes[1].err.find("nephroid: focus, wall at") == 0);
-    CHECK(outcomes[1].out.find("outside: focus, wall at") != std::string::npos);
+    CHECK(outcomes[1].err.find("nephroid: far, ") == 0);
+    CHECK(outcomes[1].out.find("outside: far, ") != std::string::npos);
     CHECK(nlohmann::json::parse(content_of(folder / "bad.json"))["outside"] > 0);
 }

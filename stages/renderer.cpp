@@ -1,6 +1,7 @@
 #include "stages/renderer.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <chrono>
 #include <cmath>
@@ -270,7 +271,9 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
         impostor_normals = layered(Format::RGBA32F, settings.impostor_size, 6, "impostor normals");
         impostor_albedo = layered(Format::RGBA8Srgb, settings.impostor_size, 6, "impostor albedo");
     }
-    if (!plan.maps.empty()) {
+    const bool countable = settings.photons > 0 && std::has_single_bit(static_cast<unsigned>(settings.photons));
+    if (!countable) faults.add("photons", "must be a power of two");
+    if (!plan.maps.empty() && countable) {
         const int n = settings.photons, size = settings.map_size, wide = size / 2;
         if (exact()) {
             hidden_irradiance = layered(Format::RGBA32F, wide, 6, "hidden caustic map");
@@ -320,7 +323,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
         if (!(settings.splat_threshold >= hierarchical::narrowest)) faults.add("splat_threshold", "must be at least what the narrowest splat takes");
         if (settings.sprite_size != 0 && !(settings.sprite_size >= hierarchical::narrowest)) faults.add("sprite_size", "must be at least what the narrowest splat takes");
     }
-    if (exact() && settings.technique == Technique::Hierarchical && settings.hierarchical_variant == hierarchical::Variant::ThinLens) faults.add("tracing", "must be in image space: a thin lens is looked up in the object's layers");
+    if (exact() && needs_image_space(settings)) faults.add("tracing", "must be in image space: the variant looks at pictures of objects");
     if (map_levels() > 1 && settings.map_size % hierarchical::map_size_step != 0) faults.add("map_size", "must be a multiple of what its levels need", settings.map_size, hierarchical::map_size_step);
     faults.add(device.faults());
 }

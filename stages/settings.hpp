@@ -41,4 +41,9 @@ struct Settings {
     bool leave_out = true;     // passes that change nothing; off only to see that they do not
 };
 
+// Whether photons ask more of their object's pictures than where they land, which exact tracing does not draw.
+inline bool needs_image_space(const Settings& s) {
+    return s.variant != mapping::Variant::TwoSided || (s.technique == Technique::Hierarchical && s.hierarchical_variant == hierarchical::Variant::ThinLens);
+}
+
 }  // namespace nephroid::stages

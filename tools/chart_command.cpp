@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "scenes/load.hpp"
-#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/chart_page.hpp"
 #include "tools/chart/cost.hpp"
 #include "tools/chart/drawing.hpp"
@@ -149,9 +148,7 @@ void make_model(const ChartArguments& a) {
         for (const std::string& options : chart::ladder()) steps.push_back(chart::options_of({"", options}, a.size));
         const stages::Settings& size = steps.front().settings;
         const chart::Truth truth = chart::truth_of(view.name, scene, size.width, size.height, a.truth, {});
-        const auto traced = std::make_shared<stages::TracedWorld>();
-        throw_faults(traced->build(device.executor(), renderer.world()));
-        const chart::Probe probe = chart::probe(device, renderer.world(), traced, scene, size.width, size.height);
+        const chart::Probe probe = chart::probe(device, renderer.world(), chart::trace_world(device, renderer.world()), scene, size.width, size.height);
         chart::ModelRow row{view.scene, view.name, probe.change, probe.detail, probe.caustic_share, probe.medium, probe.dispersion, probe.cost, {}, {}, {}};
         for (const RenderOptions& step : steps) {
             const SceneRendering r = renderer.render(step.settings);

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "pipeline/math.hpp"
-#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/auto_settings.hpp"
 #include "tools/commands.hpp"
 #include "tools/debug_pixel.hpp"
@@ -128,8 +127,7 @@ void run(RenderArguments& a) {
     if (a.request.error > 0 || a.request.budget > 0) {
         // What is traced is needed anyway, and made once.
         const double prepare_start = now_ms();
-        traced = std::make_shared<stages::TracedWorld>();
-        throw_faults(traced->build(device.executor(), built.world));
+        traced = chart::trace_world(device, built.world);
         times.prepare_ms = now_ms() - prepare_start;
         const chart::AutoChoice choice = chart::choose_settings(device, built.world, traced, scene, a.request, a.options);
         times.probe_ms = choice.probe_ms;

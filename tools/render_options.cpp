@@ -131,9 +131,7 @@ void RenderOptions::finish(const scenes::Scene& loaded) {
     settings.photons = parse_photons(photons);
     finish_variant();
     settings.tracing = tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
-    // A thin lens is looked up in the object's layers, which nobody draws then.
-    const bool needs_layers = settings.variant != stages::mapping::Variant::TwoSided || (settings.technique == stages::Technique::Hierarchical && settings.hierarchical_variant == stages::hierarchical::Variant::ThinLens);
-    if (settings.tracing == stages::Tracing::Exact && needs_layers)
+    if (settings.tracing == stages::Tracing::Exact && stages::needs_image_space(settings))
         throw std::runtime_error("--tracing exact: does not go with --variant " + variant);
     settings.intersection = intersection == "newton" ? stages::Intersection::Newton : intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
     while (settings.samples_side * settings.samples_side < samples) ++settings.samples_side;

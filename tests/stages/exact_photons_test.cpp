@@ -317,4 +317,34 @@ TEST_CASE("exact tracing needs no pictures of objects and receivers from the lig
     CHECK(said == 3);
 }
 
+TEST_CASE("variants that look at pictures of objects do not go with exact tracing") {
+    Device device;
+    const BuiltWorld built = build_world(device, scenes::bundled_scene("glass-sphere"));
+    const auto is_refused = [&](const stages::Settings& settings) { return !stages::Renderer(device, built.world, settings).faults().empty(); };
+    stages::Settings settings = exact(16, 12, 256, 64);
+    CHECK_FALSE(is_refused(settings));
+    for (const stages::mapping::Variant variant : {stages::mapping::Variant::Tutorial, stages::mapping::Variant::Vertices}) {
+        settings.variant = variant;
+        CHECK(is_refused(settings));
+    }
+    settings.variant = stages::mapping::Variant::TwoSided;
+    settings.technique = stages::Technique::Hierarchical;
+    CHECK_FALSE(is_refused(settings));
+    settings.hierarchical_variant = stages::hierarchical::Variant::ThinLens;
+    CHECK(is_refused(settings));
+}
+
+TEST_CASE("a number of photons that is no power of two is refused") {
+    Device device;
+    const BuiltWorld built = build_world(device, scenes::bundled_scene("glass-sphere"));
+    for (const int photons : {0, -4, 48, 3000}) {
+        CAPTURE(photons);
+        for (const stages::Tracing tracing : {stages::Tracing::ImageSpace, stages::Tracing::Exact}) {
+            stages::Settings settings = small(16, 12, photons, 64);
+            settings.tracing = tracing;
+            CHECK_FALSE(stages::Renderer(device, built.world, settings).faults().empty());
+        }
+    }
+}
+
 }  // namespace nephroid::test

@@ -8,7 +8,6 @@
 #include "scenes/bundled.hpp"
 #include "scenes/shapes.hpp"
 #include "tests/tools/program.hpp"
-#include "stages/exact_tracing/traced_world.hpp"
 #include "tools/chart/auto_settings.hpp"
 #include "tools/chart/model_views.hpp"
 #include "tools/chart/sweep.hpp"
@@ -59,9 +58,7 @@ Probe probe_of(const scenes::Scene& scene, int lanes, int threads) {
     Device device({.threads = threads, .lanes = lanes});
     throw_faults(device.faults());
     const BuiltWorld built = build_world(device, scene);
-    const auto traced = std::make_shared<stages::TracedWorld>();
-    throw_faults(traced->build(device.executor(), built.world));
-    return probe(device, built.world, traced, scene, 512, 384);
+    return probe(device, built.world, trace_world(device, built.world), scene, 512, 384);
 }
 
 std::string hash_of(const Folder& folder, std::vector<std::string> arguments) {

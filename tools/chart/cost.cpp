@@ -25,6 +25,7 @@ constexpr double weights_ns[works][counts] = {
     {5.9, 0, 0, 0, 5.1, 0, 150e3, 0},        // shading; off by 30 %
     {27, 0, 0, 0, 0, 0, 20e3, 0},            // exact shadows; off by 43 %
 };
+
 Work photons_of(const stages::Settings& settings) { return settings.tracing == stages::Tracing::Exact ? Work::ExactPhotons : Work::Photons; }
 
 Work work_of(stages::PassKind kind, const stages::Settings& settings) {
@@ -126,6 +127,7 @@ Amounts amounts_of(const std::vector<RenderedPass>& passes, const stages::Settin
     for (const RenderedPass& pass : passes) {
         const PipelineStatistics& s = pass.record.statistics;
         const Work work = work_of(pass.kind, settings);
+        // A fit draws nothing, and looks at every photon.
         if (s.vs_invocations == 0 && pass.kind != stages::PassKind::FitCausticView) continue;
         add(work, Count::Passes, 1);
         add(work, Count::Texels, texels_of(pass, settings));

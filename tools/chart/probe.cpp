@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stages/exact_tracing/traced_world.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "tools/picture_difference.hpp"
 #include "tools/throw_faults.hpp"
@@ -77,6 +78,12 @@ double within_map(int map_size) {
 }
 
 }  // namespace
+
+std::shared_ptr<stages::TracedWorld> trace_world(Device& device, const stages::World& world) {
+    auto traced = std::make_shared<stages::TracedWorld>();
+    throw_faults(traced->build(device.executor(), world));
+    return traced;
+}
 
 Probe probe(Device& device, const stages::World& world, std::shared_ptr<stages::TracedWorld> traced, const scenes::Scene& scene, int width, int height) {
     const double start = now_ms();

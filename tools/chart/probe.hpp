@@ -22,6 +22,9 @@ struct Probe {
     stages::Settings settings;         // of that
 };
 
+// What exact tracing follows light through, for a probe and the frames after it. Throws std::runtime_error where there is no room.
+std::shared_ptr<stages::TracedWorld> trace_world(Device& device, const stages::World& world);
+
 // The same for every number of threads and lanes, but for the time. A world that was built of that scene, and what is traced of
 // it. Throws std::runtime_error where it cannot be drawn.
 Probe probe(Device& device, const stages::World& world, std::shared_ptr<stages::TracedWorld> traced, const scenes::Scene& scene, int width, int height);

@@ -192,6 +192,21 @@ TEST_CASE("caustics seen through a pane of index 1 are those seen without it") {
     CHECK(difference < 0.02 * squares);
 }
 
+TEST_CASE("under the edge of an open sheet of water: dimmed on the light's way, not on the eye's, which meets no water") {
+    scenes::Scene scene = floor_seen_from({0, 2, 2.5}, 0.02);
+    oracle::set_camera(scene, {0, 2, 2.5}, {0, 0, -0.3}, 0.02);
+    oracle::add_sheet(scene, "water", oracle::add_glass(scene, 1.0), {-3, 0.5, -3}, {0, 0, 3}, {6, 0, 0});
+    scene.materials.back().has_volume = true;
+    scene.materials.back().attenuation_color = {0.5f, 0.6f, 0.9f};
+    scene.materials.back().attenuation_distance = 0.7f;
+    oracle::add_point(scene, {0, 3, -1}, 4);
+    const Traced t = traced(scene, 9, 9, 1 << 17, 24);
+    const double distance = std::hypot(3.0, 0.7), in_water = distance * 0.5 / 3, unattenuated = 0.5 / pi * 4 * 3 / std::pow(distance, 3.0);
+    CHECK(t.mean("direct.G") == 0);
+    CHECK(t.mean("caustic.R") == doctest::Approx(unattenuated * std::pow(0.5, in_water / 0.7)).epsilon(0.01).scale(0));
+    CHECK(t.mean("caustic.B") == doctest::Approx(unattenuated * std::pow(0.9, in_water / 0.7)).epsilon(0.01).scale(0));
+}
+
 TEST_CASE("once-scattered light of a sun in haze: an integral along the eye's ray") {
     // Looking at a floor, the sun behind the eye's back and to the side; haze with absorption, isotropic and forward.
     for (const double g : {0.0, 0.6}) {

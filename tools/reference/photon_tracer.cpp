@@ -136,9 +136,10 @@ void PhotonTracer::land(const Path& path, const Hit& hit, const Surface& surface
     const double cosine = glm::dot(to, hit.normal) * side;
     if (!place || !(cosine > 0) || (world_.geometry().triangle(hit).hidden_behind && side < 0)) return;
     if (world_.geometry().hidden({hit.position, hit.normal}, camera_.eye())) return;
-    // Nothing is between: the eye is in what the photon ran in.
+    // Nothing is between. What the photon ran in may end at the sides, where an open surface stands for a volume: what the eye is
+    // in counts, as for all else that it sees.
     const double distance = glm::length(to);
-    const Rgb through = world_.media().transmittance(path.region, hit.position, to / distance, distance);
+    const Rgb through = world_.media().transmittance(eye_region_, hit.position, to / distance, distance);
     eyes.add(Term::Caustic, place->pixel, flux * world_.color(surface, hit) * through * (cosine / distance * place->per_intensity / pi));
 }
 

@@ -15,8 +15,8 @@ namespace nephroid::reference {
 
 class PhotonTracer {
 public:
-    // Keeps references to all.
-    PhotonTracer(const World& world, const Camera& camera, int max_events) : world_(world), camera_(camera), max_events_(max_events) {}
+    // Keeps references to all. `eye_region`: what the eye is in.
+    PhotonTracer(const World& world, const Camera& camera, Region eye_region, int max_events) : world_(world), camera_(camera), eye_region_(eye_region), max_events_(max_events) {}
 
     // `importance` of each pixel: 1 over what a contribution of this size there would be as noise; empty: not known yet.
     // Returns the sum of the photon's contributions times that, squared.
@@ -32,6 +32,7 @@ private:
 
     const World& world_;
     const Camera& camera_;
+    Region eye_region_;
     int max_events_;
 };
 

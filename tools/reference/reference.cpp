@@ -67,7 +67,7 @@ struct Tracer::Impl {
           emission(world, lamps, surroundings),
           eye_region(world.region_of(camera.eye())),
           eyes(world, camera, lamps, surroundings, eye_region, o.max_events),
-          photons(world, camera, o.max_events),
+          photons(world, camera, eye_region, o.max_events),
           mask(eyes.outlines()),
           halves{Film(mask.size()), Film(mask.size())},
           squares(mask.size()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <tuple>
 
@@ -11,7 +12,7 @@ namespace nephroid::stages {
 
 namespace {
 
-constexpr int band_count = 16, bins = 4096;
+constexpr int band_count = 16, bins = 4096, enough_photons = 256;  // along an edge
 constexpr double kept_shares[] = {0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5};  // of the flux, along each axis
 
 // Window coordinates reach to infinity: squeezed into -1..1.
@@ -29,13 +30,25 @@ Photon photon_at(const float* position, const float* flux) {
     return {{position[0], position[1], position[2]}, static_cast<double>(flux[0]) + flux[1] + flux[2], position[3] > 0};
 }
 
+bool any_photon(Executor& executor, const Texture& positions, auto&& is_one) {
+    std::atomic<bool> found = false;
+    executor.for_each(positions.height(), [&](int y, int) {
+        if (found.load(std::memory_order_relaxed)) return;
+        const float* p = reinterpret_cast<const float*>(positions.row(y));
+        for (const float* end = p + 4 * positions.width(); p != end; p += 4) {
+            if (!is_one(p)) continue;
+            found.store(true, std::memory_order_relaxed);
+            return;
+        }
+    });
+    return found;
+}
+
 }  // namespace
 
 struct CausticViewFitter::Band {
     double flux = 0, sum[3] = {0, 0, 0};  // flux-weighted directions or positions
-    std::array<std::uint64_t, bins> across, down;
-    std::uint64_t behind = 0;  // what the view cannot hold at all
-    bool outside = false, hidden = false;
+    std::array<std::uint64_t, bins> across{}, down{};
 };
 
 CausticViewFitter::CausticViewFitter() : bands_(band_count) {}
@@ -44,36 +57,42 @@ CausticViewFitter::~CausticViewFitter() = default;
 CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture& positions, const Texture& fluxes, const Light& light, const glm::vec3& scene_centre, float reach) {
     const bool parallel = light.kind == LightKind::Directional;
     const int width = positions.width(), height = positions.height();
-    const auto for_photons = [&](auto&& visit) {
+    // Every photon, or one in each square of so many along an edge.
+    const auto for_photons = [&](int step, auto&& visit) {
         executor.for_each(band_count, [&](int b, int) {
             const int first = height * b / band_count, last = height * (b + 1) / band_count;
-            for (int y = first; y < last; ++y) {
+            for (int y = first; y < last; y += step) {
                 const float *p = reinterpret_cast<const float*>(positions.row(y)), *f = reinterpret_cast<const float*>(fluxes.row(y));
-                for (int x = 0; x < width; ++x, p += 4, f += 4) {
-                    const Photon photon = photon_at(p, f);
+                for (int x = 0; x < width; x += step) {
+                    const Photon photon = photon_at(p + 4 * x, f + 4 * x);
                     if (photon.landed) visit(bands_[b], photon);
-                    else if (p[3] < 0) bands_[b].hidden = true;
                 }
             }
         });
     };
 
-    // The axis: towards the middle of the flux.
-    for (Band& b : bands_) b.flux = b.sum[0] = b.sum[1] = b.sum[2] = 0, b.across.fill(0), b.down.fill(0), b.behind = 0, b.outside = b.hidden = false;
-    for_photons([&](Band& b, const Photon& photon) {
-        glm::vec3 d = photon.position - light.position;
-        if (!parallel) d = glm::normalize(d);
-        b.flux += photon.flux;
-        for (int k = 0; k < 3; ++k) b.sum[k] += photon.flux * d[k];
-    });
+    // The axis: towards the middle of the flux. So many photons are enough to tell, if any of them landed.
+    int step = std::max(1, width / enough_photons);
     double flux = 0, sum[3] = {0, 0, 0};
-    for (const Band& b : bands_) {
-        flux += b.flux;
-        for (int k = 0; k < 3; ++k) sum[k] += b.sum[k];
+    for (;; step = 1) {
+        for (Band& b : bands_) b = Band();
+        for_photons(step, [&](Band& b, const Photon& photon) {
+            glm::vec3 d = photon.position - light.position;
+            if (!parallel) d = glm::normalize(d);
+            b.flux += photon.flux;
+            for (int k = 0; k < 3; ++k) b.sum[k] += photon.flux * d[k];
+        });
+        for (const Band& b : bands_) {
+            flux += b.flux;
+            for (int k = 0; k < 3; ++k) sum[k] += b.sum[k];
+        }
+        if (flux > 0 || step == 1) break;
     }
     Fit fit;
-    for (const Band& b : bands_) fit.hidden = fit.hidden || b.hidden;
-    if (!(flux > 0)) return fit;
+    if (!(flux > 0)) {
+        fit.hidden = any_photon(executor, positions, [](const float* p) { return p[3] < 0; });
+        return fit;
+    }
     fit.empty = false;
     if (parallel) {
         fit.view = make_view(scene_centre, light.direction);
@@ -98,13 +117,10 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         y = glm::dot(d, view.up) / divisor;
         return true;
     };
-    for_photons([&](Band& b, const Photon& photon) {
+    for_photons(step, [&](Band& b, const Photon& photon) {
         const std::uint64_t count = static_cast<std::uint64_t>(photon.flux * count_scale);
         double x, y;
-        if (!window(photon, x, y)) {
-            b.behind += count;
-            return;
-        }
+        if (!window(photon, x, y)) return;
         b.across[bin_of(squeeze(x, scale))] += count;
         b.down[bin_of(squeeze(y, scale))] += count;
     });
@@ -145,12 +161,13 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
     fit.view.centre = {static_cast<float>((left + right) * 0.5), static_cast<float>((bottom + top) * 0.5)};
     fit.view.half = {static_cast<float>(std::max((right - left) * 0.5 * margin, least)), static_cast<float>(std::max((top - bottom) * 0.5 * margin, least))};
 
-    for_photons([&](Band& b, const Photon& photon) {
-        const glm::vec4 c = fit.view.clip<float>(photon.position);
+    fit.hidden = any_photon(executor, positions, [](const float* p) { return p[3] < 0; });
+    fit.outside = any_photon(executor, positions, [&](const float* p) {
         constexpr float inside = 1 - focus_border;
-        if (!(c.w > 0) || std::abs(c.x) > c.w * inside || std::abs(c.y) > c.w * inside) b.outside = true;
+        if (!(p[3] > 0)) return false;
+        const glm::vec4 c = fit.view.clip<float>({p[0], p[1], p[2]});
+        return !(c.w > 0) || std::abs(c.x) > c.w * inside || std::abs(c.y) > c.w * inside;
     });
-    for (const Band& b : bands_) fit.outside = fit.outside || b.outside;
     return fit;
 }
 

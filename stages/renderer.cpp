@@ -8,6 +8,7 @@
 #include <span>
 
 #include "pipeline/fp_environment.hpp"
+#include "stages/caster_view.hpp"
 #include "stages/caustic_map/irradiance.hpp"
 #include "stages/caustic_view.hpp"
 #include "stages/exact_tracing/exact_photons.hpp"
@@ -84,10 +85,15 @@ enum class Sides {
 glm::dvec4 sum_of(Executor& executor, const Texture& texture, std::vector<glm::dvec4>& rows) {
     executor.for_each(texture.height(), [&](int y, int) {
         const float* texel = reinterpret_cast<const float*>(texture.row(y));
-        double sum[4] = {};
-        for (int x = 0; x < texture.width(); ++x, texel += 4)
-            for (int c = 0; c < 4; ++c) sum[c] += texel[c];
-        rows[static_cast<std::size_t>(y)] = {sum[0], sum[1], sum[2], sum[3]};
+        // Four texels' sums at a time, so that no addition waits for the one before.
+        glm::dvec4 sum[4] = {};
+        int x = 0;
+        for (; x + 4 <= texture.width(); x += 4, texel += 16)
+            for (int k = 0; k < 4; ++k)
+                for (int c = 0; c < 4; ++c) sum[k][c] += texel[4 * k + c];
+        for (; x < texture.width(); ++x, texel += 4)
+            for (int c = 0; c < 4; ++c) sum[0][c] += texel[c];
+        rows[static_cast<std::size_t>(y)] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
     });
     glm::dvec4 sum(0.0);
     for (int y = 0; y < texture.height(); ++y) sum += rows[static_cast<std::size_t>(y)];
@@ -95,6 +101,9 @@ glm::dvec4 sum_of(Executor& executor, const Texture& texture, std::vector<glm::d
 }
 
 }  // namespace
+
+// Photons along an edge for which what they meet first is remembered: 16 bytes each.
+constexpr int most_remembered = 2048;
 
 struct Renderer::Impl : PassDraws {
     const World& world;
@@ -116,7 +125,11 @@ struct Renderer::Impl : PassDraws {
     LayerPictures caster_layers, lit_layer;
     SolidLayers caster, lit_side;
     Texture occluders;
-    std::shared_ptr<TracedWorld> traced;  // of exact tracing
+    // Exact tracing
+    std::shared_ptr<TracedWorld> traced;
+    Texture seen_hits, lit_hits;  // what looks and photons meet first, which is the same for all branches; empty: looked for again
+    bool seen_hits_known = false;
+    std::pair<int, int> lit_hits_of;  // light and mesh
     // Of the caustic map at hand, with all that it takes: receivers are lit by it before the next one's photons are followed.
     std::vector<Texture> photon_positions, photon_fluxes;  // of one map, or of every one (Settings::keep_photons)
     Texture accounts, losses;  // of a band of rows of the photons
@@ -188,10 +201,6 @@ struct Renderer::Impl : PassDraws {
         return v;
     }
     CubeViews cube_views(const glm::vec3& centre) const { return CubeViews(centre, reach * 1e-4f); }
-    View caster_view(const Light& light, const Mesh& mesh) const;
-    View lit_part(const Light& light, View of) const;
-    bool exceeds_view(const Light& light, const Mesh& mesh) const;
-    View around(View v, float left, float right, float bottom, float top) const;
 
     // ---- passes
     void run(const Pass& pass);
@@ -203,7 +212,7 @@ struct Renderer::Impl : PassDraws {
     void caster_pass(const Pass& pass);
     void photon_pass(const Pass& pass);
     void trace_photons(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets);
-    void trace_photons_exactly(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets);
+    void trace_photons_exactly(const Pass& pass, const CasterView& from, int first_row, const std::array<TargetView, max_render_targets>& targets);
     void caustic_receivers(const Pass& pass);
     PhotonPlacement placement(const Pass& pass, bool wide) const;
     TargetView flux_target(const Light& light, bool wide) const;
@@ -241,7 +250,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
     // Lights may stand outside the bounds of what they light.
     for (const Light& l : world.lights)
         if (l.kind != LightKind::Directional) reach = std::max(reach, glm::length(l.position - scene_centre()) + glm::length(world.high - world.low));
-    for (int k = 0; k < (any_specular ? exact() ? point_sources : reflected_inside : 1); ++k) {
+    for (int k = 0; k < (any_specular ? exact() && settings.inner_reflections ? point_sources : reflected_inside : 1); ++k) {
         points[k].positions = target(Format::RGBA32F, width, height, "positions");
         points[k].normals = target(Format::RGBA32F, width, height, "normals");
         points[k].albedo = target(Format::RGBA32F, width, height, "albedo");
@@ -257,6 +266,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
     }
     if (exact()) {
         traced = std::move(shared);
+        if (any_specular) seen_hits = target(Format::RGBA32F, width, height, "what looks meet first");
         if (!traced) {
             traced = std::make_shared<TracedWorld>();
             faults.add(traced->build(device.executor(), world));
@@ -278,6 +288,8 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
         if (exact()) {
             hidden_irradiance = layered(Format::RGBA32F, wide, 6, "hidden caustic map");
             hidden_depth = layered(Format::D32F, wide, 6, "hidden caustic map depth");
+            const bool several = std::any_of(plan.maps.begin(), plan.maps.end(), [](const CausticMapPlan& m) { return m.other_branch; });
+            if (several && n <= most_remembered) lit_hits = target(Format::RGBA32F, n, n, "what photons meet first");
         } else {
             receiver_depth = layered(Format::D32F, settings.receiver_map_size, 6, "receiver map");
             receiver_ids = layered(Format::R32F, settings.receiver_map_size, 6, "receiver map ids");
@@ -342,55 +354,6 @@ void Renderer::Impl::measure_vertices() {
 }
 
 // ---- views and sources
-
-View Renderer::Impl::around(View v, float left, float right, float bottom, float top) const {
-    constexpr float margin = 1.01f, least = 1e-7f;
-    v.centre = {(left + right) * 0.5f, (bottom + top) * 0.5f};
-    v.half = {std::max((right - left) * 0.5f * margin, least), std::max((top - bottom) * 0.5f * margin, least)};
-    if (v.perspective) v.near_plane = reach * 1e-4f;
-    return v;
-}
-
-// A view of one object from a light that holds all of it, or as much as one picture can.
-View Renderer::Impl::caster_view(const Light& light, const Mesh& mesh) const {
-    const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
-    View v = light.kind == LightKind::Directional ? parallel_view(light) : light.kind == LightKind::Spot ? make_view(light.position, light.direction) : look_at(light.position, centre);
-    float left = 1e30f, right = -1e30f, bottom = 1e30f, top = -1e30f;
-    for (int k = 0; k < 8; ++k) {
-        const glm::vec3 d = glm::vec3(k & 1 ? mesh.high.x : mesh.low.x, k & 2 ? mesh.high.y : mesh.low.y, k & 4 ? mesh.high.z : mesh.low.z) - v.origin;
-        const float z = glm::dot(d, v.forward);
-        float x = glm::dot(d, v.right), y = glm::dot(d, v.up);
-        if (v.perspective) {
-            const float least = std::max(std::max(std::abs(x), std::abs(y)) / widest_caster_view, 1e-20f);
-            x /= std::max(z, least);
-            y /= std::max(z, least);
-        }
-        left = std::min(left, x), right = std::max(right, x), bottom = std::min(bottom, y), top = std::max(top, y);
-    }
-    return around(v, left, right, bottom, top);
-}
-
-// The part of a view of an object that a spot light's cone takes.
-View Renderer::Impl::lit_part(const Light& light, View of) const {
-    if (light.kind != LightKind::Spot || light.cos_outer <= 0.1f) return of;
-    const float tangent = std::sqrt(std::max(0.0f, 1 - light.cos_outer * light.cos_outer)) / light.cos_outer;
-    const float left = std::max(of.centre.x - of.half.x, -tangent), right = std::min(of.centre.x + of.half.x, tangent);
-    const float bottom = std::max(of.centre.y - of.half.y, -tangent), top = std::min(of.centre.y + of.half.y, tangent);
-    const bool takes_all = right - left >= 2 * of.half.x && top - bottom >= 2 * of.half.y, takes_none = left >= right || bottom >= top;
-    return takes_all || takes_none ? of : around(of, left, right, bottom, top);
-}
-
-// Whether caster_view cannot hold all of an object that the light reaches.
-bool Renderer::Impl::exceeds_view(const Light& light, const Mesh& mesh) const {
-    if (light.kind == LightKind::Directional || (light.kind == LightKind::Spot && 1 <= light.cos_outer * std::sqrt(1 + widest_caster_view * widest_caster_view))) return false;
-    const View v = caster_view(light, mesh);
-    for (int k = 0; k < 8; ++k) {
-        const glm::vec3 d = glm::vec3(k & 1 ? mesh.high.x : mesh.low.x, k & 2 ? mesh.high.y : mesh.low.y, k & 4 ? mesh.high.z : mesh.low.z) - v.origin;
-        // In the very middle of an object there is no view.
-        if (!(std::max(std::abs(glm::dot(d, v.right)), std::abs(glm::dot(d, v.up))) <= glm::dot(d, v.forward) * widest_caster_view)) return true;
-    }
-    return false;
-}
 
 ReceiverMap Renderer::Impl::light_receivers(const Light& light) const {
     ReceiverMap receivers;
@@ -464,7 +427,7 @@ void Renderer::Impl::draw_layers(const View& view, int m, LayerPictures& to) {
 void Renderer::Impl::caster_pass(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     const int m = pass.mesh;
-    const View view = caster_view(light, world.meshes[m]), lit_view = lit_part(light, view);
+    const View view = caster_view(light, world.meshes[m], reach).view, lit_view = lit_part(light, view);
     draw_layers(view, m, caster_layers);
     caster = lit_side = solid(view, m, caster_layers);
     if (lit_view.centre != view.centre || lit_view.half != view.half) {
@@ -513,7 +476,7 @@ void Renderer::Impl::trace_photons(const Pass& pass, int first_row, const std::a
     }
 }
 
-void Renderer::Impl::trace_photons_exactly(const Pass& pass, int first_row, const std::array<TargetView, max_render_targets>& targets) {
+void Renderer::Impl::trace_photons_exactly(const Pass& pass, const CasterView& from, int first_row, const std::array<TargetView, max_render_targets>& targets) {
     const Light& light = world.lights[pass.light];
     const CausticMapPlan& how = plan.maps[pass.map];
     TraceExactPhotons photons;
@@ -524,23 +487,26 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, int first_row, cons
     photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !how.inside_branch;
     photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
     photons.light = LightSource(light);
-    photons.view = lit_part(light, caster_view(light, world.meshes[pass.mesh]));
-    photons.all_round = exceeds_view(light, world.meshes[pass.mesh]);
-    photons.side = settings.photons;
-    photons.first_row = first_row;
+    photons.rays = {lit_part(light, from.view), from.exceeded, settings.photons, first_row};
     photons.mesh = pass.mesh;
     photons.other_branch_followed = how.other_branch;
     photons.lie_open = TracedWorld::lies_open(world, light);
     const Mesh& mesh = world.meshes[pass.mesh];
     photons.middle = (mesh.low + mesh.high) * 0.5f;
+    if (how.other_branch && !lit_hits.empty()) {
+        if (lit_hits_of != std::pair{pass.light, pass.mesh}) draw_screen("what photons meet first", MeetPhotons{photons.tracer, photons.rays}, {lit_hits.rows(first_row, targets[0].height())});
+        photons.hits = lit_hits;
+        photons.hits_known = true;
+    }
     draw_screen("photons", photons, targets);
 }
 
 void Renderer::Impl::photon_pass(const Pass& pass) {
     const int rows = accounts.height();
+    const CasterView from = exact() ? caster_view(world.lights[pass.light], world.meshes[pass.mesh], reach) : CasterView();
     for (int first_row = 0; first_row < settings.photons; first_row += rows) {
         const std::array<TargetView, max_render_targets> targets = {positions_of(pass).rows(first_row, rows), fluxes_of(pass).rows(first_row, rows), accounts.mip(), losses.mip()};
-        if (exact()) trace_photons_exactly(pass, first_row, targets);
+        if (exact()) trace_photons_exactly(pass, from, first_row, targets);
         else trace_photons(pass, first_row, targets);
         if (!settings.audit) continue;
         Executor& executor = device.executor();
@@ -548,6 +514,7 @@ void Renderer::Impl::photon_pass(const Pass& pass) {
         audit.emitted += kept.x, audit.absorbed += kept.y, audit.not_followed += kept.z, audit.correction += kept.w;
         audit.trapped += lost.x, audit.missed += lost.y;
     }
+    lit_hits_of = {pass.light, pass.mesh};
 }
 
 void Renderer::Impl::store_receiver_sides(const View& view, const TargetView& sides, const TargetView& depth) {
@@ -716,12 +683,12 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     trace.tracer.light = false;
     if (settings.inner_reflections) trace.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
     trace.tracer.seed = ~static_cast<std::uint64_t>(pass.branch);
-    trace.eye = eye();
-    trace.width = width, trace.height = height;
-    trace.first = points[first].positions;
-    trace.eye_depth = eye_depth;
+    trace.looks = {eye(), width, height, points[first].positions, eye_depth};
+    if (!seen_hits_known) draw_screen("what looks meet first", MeetSeen{trace.tracer, trace.looks}, {seen_hits.mip()});
+    seen_hits_known = true;
+    trace.hits = seen_hits;
     trace.surroundings.picture = world.environment;
-    trace.pixel_measure = 4.0f * trace.eye.half.x * trace.eye.half.y / (static_cast<float>(width) * static_cast<float>(height));
+    trace.pixel_measure = 4.0f * trace.looks.eye.half.x * trace.looks.eye.half.y / (static_cast<float>(width) * static_cast<float>(height));
     store_seen(pass, trace);
 }
 
@@ -803,7 +770,7 @@ void Renderer::Impl::run(const Pass& pass) {
             if (!map.fit.empty) gather.build_pyramid(*this, placement(pass, false), fluxes_of(pass));
             return;
         case PassKind::TraversePhotons:
-            if (!map.fit.empty) gather.traverse(*this, map.fit.outside);
+            if (!map.fit.empty) gather.traverse(*this, placement(pass, false), fluxes_of(pass), map.fit.outside);
             return;
         case PassKind::SplatPhotons: return splat(pass);
         case PassKind::ResolveCaustic: return resolve(pass);
@@ -862,6 +829,8 @@ Faults Renderer::render() {
     if (!r.faults.empty()) return r.faults;
     r.frame_faults = Faults();
     r.audit = EnergyAudit();
+    r.seen_hits_known = false;
+    r.lit_hits_of = {-1, -1};
     for (std::size_t k = 0; k < r.plan.passes.size(); ++k) {
         const Pass& pass = r.plan.passes[k];
         if (r.listener) r.listener->on_pass(static_cast<int>(k), static_cast<int>(r.plan.passes.size()), pass.name.c_str());

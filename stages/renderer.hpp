@@ -17,9 +17,6 @@ namespace nephroid::stages {
 
 class TracedWorld;  // exact_tracing/traced_world.hpp
 
-// A light's picture of an object holds no more than lies within this tangent of its axis: of an object round the light, a part.
-inline constexpr float widest_caster_view = 4.0f;
-
 struct PassRecord {
     double milliseconds = 0;
     PipelineStatistics statistics;

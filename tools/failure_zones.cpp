@@ -1,10 +1,10 @@
 #include "tools/failure_zones.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <limits>
 
+#include "stages/caster_view.hpp"
 #include "stages/hierarchical_caustic_maps/interpolated_splats.hpp"
 #include "stages/mapping/splat_pass.hpp"
 #include "stages/renderer.hpp"
@@ -16,18 +16,10 @@ namespace {
 
 using stages::SurfaceKind;
 
-// A light sees an object in one picture: what lies beside or behind the light is not in it.
-bool fits_one_picture(const stages::Light& light, const stages::Mesh& mesh) {
-    if (light.kind == stages::LightKind::Directional) return true;
-    const glm::vec3 centre = (mesh.low + mesh.high) * 0.5f;
-    if (glm::all(glm::lessThan(glm::abs(light.position - centre), (mesh.high - mesh.low) * 0.5f))) return false;
-    // A spot's cone is narrower than a picture can be.
-    if (light.kind == stages::LightKind::Spot) return true;
-    const stages::View view = stages::look_at(light.position, centre);
-    return std::all_of(mesh.vertices.data(), mesh.vertices.data() + mesh.vertices.size(), [&](const stages::WorldVertex<float>& vertex) {
-        const glm::vec3 d = vertex.position - light.position;
-        return std::max(std::abs(glm::dot(d, view.right)), std::abs(glm::dot(d, view.up))) <= glm::dot(d, view.forward) * stages::widest_caster_view;
-    });
+// A light sees an object in one picture: neither round itself nor from inside.
+bool fits_one_picture(const stages::Light& light, const stages::Mesh& mesh, float reach) {
+    const bool inside = light.kind != stages::LightKind::Directional && glm::all(glm::lessThan(glm::abs(light.position - (mesh.low + mesh.high) * 0.5f), (mesh.high - mesh.low) * 0.5f));
+    return !inside && !stages::caster_view(light, mesh, reach).exceeded;
 }
 
 // How far apart photons may be, in texels, for the widest splats to reach from one to the next.
@@ -59,7 +51,7 @@ std::vector<std::string> failure_notes(const stages::World& world, const stages:
         casters = true;
         mirrors = mirrors || kind == SurfaceKind::Mirror;
         for (const stages::Light& light : world.lights)
-            if (settings.tracing == stages::Tracing::ImageSpace && !fits_one_picture(light, mesh))
+            if (settings.tracing == stages::Tracing::ImageSpace && !fits_one_picture(light, mesh, glm::length(world.high - world.low)))
                 notes.push_back("light '" + light.name + "' stands in or close to '" + mesh.name + "', too close to see all of it in one picture: what it does not see has no caustic");
     }
     if (!casters || world.lights.empty()) return notes;

@@ -105,7 +105,7 @@ Gathered gather(Device& device, const stages::Renderer& renderer, const stages::
         const double start = now_ms(), cpu_start = cpu_ms();
         if (hierarchical::has_pyramid(s.hierarchical_variant, s.photons)) photons.build_pyramid(draws, placement, renderer.photon_fluxes(0));
         const std::uint64_t before = draws.statistics.so_primitives_written[0];
-        if (hierarchical::traverses(s.hierarchical_variant)) photons.traverse(draws, false);
+        if (hierarchical::traverses(s.hierarchical_variant)) photons.traverse(draws, placement, renderer.photon_fluxes(0), false);
         g.visited = hierarchical::traverses(s.hierarchical_variant) ? static_cast<double>(draws.statistics.so_primitives_written[0] - before) + hierarchical::root_side * hierarchical::root_side
                                                                     : static_cast<double>(s.photons) * s.photons;
         const PipelineStatistics listed = draws.statistics;

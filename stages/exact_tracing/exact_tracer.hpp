@@ -37,11 +37,17 @@ struct ExactTracer {
         PathLedger<F> ledger;
     };
 
-    // From the light to the first surface. Rays that meet another mesh than `mesh` first are not photons of this pass; the place
-    // where the others start is returned.
+    // What a ray meets first: a look, no side of a receiver that nobody sees.
     template <class F>
-    vec3<F> begin(Ray<F>& ray, std::int32_t mesh, LaneMask<F>& lit) const {
-        const TriangleHierarchyView::Hit<F> hit = world.hierarchy.nearest(ray.position, ray.direction, ray.active, TriangleHierarchyView::Start::Anywhere);
+    TriangleHierarchyView::Hit<F> first_hit(const Ray<F>& ray) const {
+        constexpr TriangleHierarchyView::Start anywhere = TriangleHierarchyView::Start::Anywhere;
+        return light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active, anywhere) : nearest_seen(ray.position, ray.direction, ray.active, anywhere);
+    }
+
+    // From the light to the first surface, which is `hit`. Rays that meet another mesh than `mesh` first are not photons of this
+    // pass; the place where the others start is returned.
+    template <class F>
+    vec3<F> begin(Ray<F>& ray, const TriangleHierarchyView::Hit<F>& hit, std::int32_t mesh, LaneMask<F>& lit) const {
         const LaneInt<F> meshes = world.mesh(hit);
         lit = ray.active = ray.active & (meshes == LaneInt<F>(mesh));
         const vec3<F> position = world.position(hit);
@@ -57,49 +63,61 @@ struct ExactTracer {
         return position;
     }
 
-    // On from there; from event 0, a look from its beginning.
+    // On from there.
     template <class F>
-    void follow(Ray<F>& ray, int event = 1) const {
-        PathLedger<F>& ledger = ray.ledger;
-        for (; any(ray.active); ++event) {
-            const TriangleHierarchyView::Hit<F> hit = light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active) : nearest_seen(ray.position, ray.direction, ray.active, event == 0 ? TriangleHierarchyView::Start::Anywhere : TriangleHierarchyView::Start::OffSurface);
-            const LaneMask<F> found = ray.active & hit.found();
-            ledger.drop(ray.active & !found, ledger.missed);
-            if (!light) {
-                const LaneMask<F> gone = ray.active & !found;
-                ray.escaped = ray.escaped | gone;
-                ray.escaping = select(gone, ledger.carried, ray.escaping);
-            }
-            ray.active = found;
-            if (none(found)) return;
-            const vec3<F> position = world.position(hit);
-            const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), found);
-            const LaneMask<F> lands = found & (optics.receives > F(0.0f));
-            if (event == 0) ray.attenuation = select(glm::dot(ray.direction, world.normals.template load<F>(hit.triangle).triangle) > F(0.0f), optics.attenuation, vec3<F>(F(0.0f)));
-            absorb(ray, found, ray.attenuation, hit.distance);
-            ray.length = select(found, ray.length + hit.distance, ray.length);
-            if (any(lands)) {
-                ray.landed = ray.landed | lands;
-                ray.position = select(lands, position, ray.position);
-                const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
-                const LaneMask<F> front = glm::dot(ray.direction, plane) < F(0.0f);
-                ray.normal = select(lands, select(front, plane, -plane), ray.normal);
-                ray.unseen = ray.unseen | (lands & !front & (optics.two_sided == F(0.0f)));
-                ray.landing.second = select(lands, hit.second, ray.landing.second);
-                ray.landing.third = select(lands, hit.third, ray.landing.third);
-                ray.landing.triangle = select(lands, hit.triangle, ray.landing.triangle);
-            }
-            ray.active = found & !lands;
-            if (event == bounces) {
-                ledger.drop(ray.active, ledger.trapped);
-                ray.active = LaneMask<F>(false);
-                return;
-            }
-            if (any(ray.active)) meet(ray, hit, position, optics, event);
+    void follow(Ray<F>& ray) const {
+        for (int event = 1; any(ray.active); ++event) {
+            const TriangleHierarchyView::Hit<F> hit = light ? world.hierarchy.nearest(ray.position, ray.direction, ray.active) : nearest_seen(ray.position, ray.direction, ray.active, TriangleHierarchyView::Start::OffSurface);
+            step(ray, hit, event);
         }
+    }
+    // A look from its beginning, to what it meets first, and on.
+    template <class F>
+    void look(Ray<F>& ray, const TriangleHierarchyView::Hit<F>& hit) const {
+        step(ray, hit, 0);
+        follow(ray);
     }
 
 private:
+    // To the surface that was found, and what happens there.
+    template <class F>
+    void step(Ray<F>& ray, const TriangleHierarchyView::Hit<F>& hit, int event) const {
+        PathLedger<F>& ledger = ray.ledger;
+        const LaneMask<F> found = ray.active & hit.found();
+        ledger.drop(ray.active & !found, ledger.missed);
+        if (!light) {
+            const LaneMask<F> gone = ray.active & !found;
+            ray.escaped = ray.escaped | gone;
+            ray.escaping = select(gone, ledger.carried, ray.escaping);
+        }
+        ray.active = found;
+        if (none(found)) return;
+        const vec3<F> position = world.position(hit);
+        const SurfaceOptics<F> optics = world.optics_of<F>(world.mesh(hit), found);
+        const LaneMask<F> lands = found & (optics.receives > F(0.0f));
+        if (event == 0) ray.attenuation = select(glm::dot(ray.direction, world.normals.template load<F>(hit.triangle).triangle) > F(0.0f), optics.attenuation, vec3<F>(F(0.0f)));
+        absorb(ray, found, ray.attenuation, hit.distance);
+        ray.length = select(found, ray.length + hit.distance, ray.length);
+        if (any(lands)) {
+            ray.landed = ray.landed | lands;
+            ray.position = select(lands, position, ray.position);
+            const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
+            const LaneMask<F> front = glm::dot(ray.direction, plane) < F(0.0f);
+            ray.normal = select(lands, select(front, plane, -plane), ray.normal);
+            ray.unseen = ray.unseen | (lands & !front & (optics.two_sided == F(0.0f)));
+            ray.landing.second = select(lands, hit.second, ray.landing.second);
+            ray.landing.third = select(lands, hit.third, ray.landing.third);
+            ray.landing.triangle = select(lands, hit.triangle, ray.landing.triangle);
+        }
+        ray.active = found & !lands;
+        if (event == bounces) {
+            ledger.drop(ray.active, ledger.trapped);
+            ray.active = LaneMask<F>(false);
+            return;
+        }
+        if (any(ray.active)) meet(ray, hit, position, optics, event);
+    }
+
     // Past the sides of receivers that are not seen; the distance is from the beginning.
     template <class F>
     TriangleHierarchyView::Hit<F> nearest_seen(vec3<F> origin, const vec3<F>& direction, LaneMask<F> active, TriangleHierarchyView::Start start) const {

@@ -5,7 +5,9 @@
 
 namespace nephroid {
 using namespace stages;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, MeetPhotons>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, TraceExactPhotons>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, MeetSeen>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, TraceSeenExactly>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, ShadeDirectExactly>;
 }  // namespace nephroid

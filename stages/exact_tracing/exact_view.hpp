@@ -6,14 +6,44 @@
 
 namespace nephroid::stages {
 
-// One branch, for the pixels in which something specular is seen first; where looks part again, behind the surface inside which
-// is the third branch, they go one way by chance. The other pixels are discarded.
-struct TraceSeenExactly {
-    ExactTracer tracer;  // of looks
+// Looks at what is specular: of pixels in which the eye sees that first.
+struct SpecularLooks {
     View eye;
     int width = 1, height = 1;
     Texture2DView<Format::RGBA32F> first;    // what the eye sees first: w is 0 where that is no receiver
     Texture2DView<Format::D32F> eye_depth;   // of everything
+
+    template <class F>
+    LaneMask<F> here(LaneInt<F> x, LaneInt<F> y) const {
+        return (eye_depth.fetch<F>(x, y).x > F(0.0f)) & (first.fetch<F>(x, y).w == F(0.0f));
+    }
+    template <class F>
+    ExactTracer::Ray<F> ray(const PixelInput<F>& pixel, LaneMask<F> active) const {
+        ExactTracer::Ray<F> r;
+        r.position = broadcast<F>(eye.origin);
+        r.direction = glm::normalize(eye.ray(pixel.position.x * F(1.0f / static_cast<float>(width)), pixel.position.y * F(1.0f / static_cast<float>(height))));
+        r.active = active;
+        r.index = as_uint(to_int_in_range(pixel.position.y) * width + to_int_in_range(pixel.position.x));
+        return r;
+    }
+};
+
+// What they meet first, which is the same for all branches: a texel each.
+struct MeetSeen {
+    ExactTracer tracer;  // of looks
+    SpecularLooks looks;
+    template <class F>
+    vec4<F> operator()(const PixelInput<F>& pixel) const {
+        return tracer.first_hit(looks.ray<F>(pixel, looks.here<F>(to_int_in_range(pixel.position.x), to_int_in_range(pixel.position.y)))).texel();
+    }
+};
+
+// One branch of them. Where looks part again, behind the surface inside which is the third branch, they go one way by chance. The
+// other pixels are discarded.
+struct TraceSeenExactly {
+    ExactTracer tracer;  // of looks
+    SpecularLooks looks;
+    Texture2DView<Format::RGBA32F> hits;  // MeetSeen
     Surroundings surroundings;
     float pixel_measure = 0;  // of the picture's pixels at unit distance
 
@@ -21,17 +51,13 @@ struct TraceSeenExactly {
     template <class F>
     PixelOutput<F, 4> operator()(const PixelInput<F>& pixel) const {
         const LaneInt<F> x = to_int_in_range(pixel.position.x), y = to_int_in_range(pixel.position.y);
-        const LaneMask<F> mine = (eye_depth.fetch<F>(x, y).x > F(0.0f)) & (first.fetch<F>(x, y).w == F(0.0f));
+        const LaneMask<F> mine = looks.here<F>(x, y);
         PixelOutput<F, 4> out{};
         out.discard = !mine;
         if (none(mine)) return out;
-        ExactTracer::Ray<F> ray;
-        ray.position = broadcast<F>(eye.origin);
-        ray.direction = glm::normalize(eye.ray(pixel.position.x * F(1.0f / static_cast<float>(width)), pixel.position.y * F(1.0f / static_cast<float>(height))));
-        ray.active = mine;
-        ray.index = as_uint(y * width + x);
+        ExactTracer::Ray<F> ray = looks.ray<F>(pixel, mine);
         ray.by_chance = LaneMask<F>(tracer.branch == Branch::Reflected);
-        tracer.follow(ray, 0);
+        tracer.look(ray, TriangleHierarchyView::Hit<F>::from_texel(hits.fetch<F>(x, y)));
         if (tracer.branch == Branch::ReflectedInside) {
             ray.landed = ray.landed & ray.by_chance;
             ray.escaped = ray.escaped & ray.by_chance;

@@ -97,21 +97,18 @@ Faults TriangleHierarchy::build(Executor& executor, const World& world) {
         if (what >= 0) subtrees_.push_back(what);
     }
     place_triangles(executor, world);
+    fit(executor);
     references_ = Buffer<Reference>();
-    bound();
     return faults;
 }
 
-// Puts a subtree's root, and its box, where its range hangs.
-void TriangleHierarchy::hang(const Range& range, std::int32_t what, const Box& box) {
+// Puts a subtree's root where its range hangs.
+void TriangleHierarchy::hang(const Range& range, std::int32_t what) {
     if (range.parent < 0) {
         root_ = what;
         return;
     }
-    HierarchyNode& node = nodes_[range.parent];
-    node.child[range.side] = what;
-    std::copy_n(box.low, 3, node.bounds[range.side]);
-    std::copy_n(box.high, 3, node.bounds[range.side] + 3);
+    nodes_[range.parent].child[range.side] = what;
 }
 
 // Makes a leaf, or a node, and what is left and right of it.
@@ -174,13 +171,13 @@ bool TriangleHierarchy::split(const Range& range, Range& left, Range& right) {
     }
     if (in_left == 0) {
         if (range.count <= most_in_leaf) {
-            hang(range, leaf(range.first, range.count), bounds);
+            hang(range, leaf(range.first, range.count));
             return false;
         }
         in_left = range.count / 2;
     }
     const std::int32_t node = range.first + in_left;
-    hang(range, node, bounds);
+    hang(range, node);
     left = {range.first, in_left, range.depth + 1, node, 0};
     right = {node, range.count - in_left, range.depth + 1, node, 1};
     return true;
@@ -228,32 +225,41 @@ TriangleHierarchy::Box TriangleHierarchy::bounds_of(std::int32_t what) const {
     return box;
 }
 
-void TriangleHierarchy::refit_node(std::int32_t node) {
+bool TriangleHierarchy::has_receivers(std::int32_t what) const {
+    if (what >= 0) return (nodes_[what].receivers[0] | nodes_[what].receivers[1]) != 0;
+    const HierarchyTriangle *first = &triangles_[~what >> 3], *last = first + (~what & 7);
+    return std::any_of(first, last + 1, [](const HierarchyTriangle& t) { return t.receiver != 0; });
+}
+
+void TriangleHierarchy::fit_node(std::int32_t node) {
     for (int side = 0; side < 2; ++side) {
-        const Box box = bounds_of(nodes_[node].child[side]);
+        const std::int32_t child = nodes_[node].child[side];
+        const Box box = bounds_of(child);
         std::copy_n(box.low, 3, nodes_[node].bounds[side]);
         std::copy_n(box.high, 3, nodes_[node].bounds[side] + 3);
+        nodes_[node].receivers[side] = has_receivers(child) ? 1 : 0;
     }
 }
 
-void TriangleHierarchy::refit_below(std::int32_t node) {
+void TriangleHierarchy::fit_below(std::int32_t node) {
     for (const std::int32_t child : nodes_[node].child)
-        if (child >= 0) refit_below(child);
-    refit_node(node);
+        if (child >= 0) fit_below(child);
+    fit_node(node);
+}
+
+// What nodes hold, from below.
+void TriangleHierarchy::fit(Executor& executor) {
+    executor.for_each(static_cast<int>(subtrees_.size()), [&](int i, int) { fit_below(subtrees_[i]); });
+    for (auto node = top_nodes_.rbegin(); node != top_nodes_.rend(); ++node) fit_node(*node);
+    const Box box = bounds_of(root_);
+    low_ = {box.low[0], box.low[1], box.low[2]};
+    high_ = {box.high[0], box.high[1], box.high[2]};
 }
 
 void TriangleHierarchy::refit(Executor& executor, const World& world) {
     if (count_ == 0) return;
     place_triangles(executor, world);
-    executor.for_each(static_cast<int>(subtrees_.size()), [&](int i, int) { refit_below(subtrees_[i]); });
-    for (auto node = top_nodes_.rbegin(); node != top_nodes_.rend(); ++node) refit_node(*node);
-    bound();
-}
-
-void TriangleHierarchy::bound() {
-    const Box box = bounds_of(root_);
-    low_ = {box.low[0], box.low[1], box.low[2]};
-    high_ = {box.high[0], box.high[1], box.high[2]};
+    fit(executor);
 }
 
 TriangleHierarchyView TriangleHierarchy::view() const {

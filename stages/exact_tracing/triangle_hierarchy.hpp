@@ -23,7 +23,7 @@ namespace nephroid::stages {
 struct HierarchyNode {
     float bounds[2][6];     // low x, y, z, high x, y, z
     std::int32_t child[2];  // a node, or ~(8 times the first triangle plus their number less 1)
-    std::int32_t padding[2];
+    std::int32_t receivers[2];  // 1: there are some
 };
 struct HierarchyTriangle {
     float corner[3][3];
@@ -56,6 +56,10 @@ struct TriangleHierarchyView {
         F second, third;           // weights of the triangle's second and third corner
         LaneInt<F> triangle;       // in `triangles`
         LaneMask<F> found() const { return triangle >= LaneInt<F>(0); }
+
+        // As a texel of four floats.
+        vec4<F> texel() const { return {distance, second, third, bits_float(as_uint(triangle + LaneInt<F>(1)))}; }
+        static Hit from_texel(const vec4<F>& t) { return {t.x, t.y, t.z, as_int(float_bits(t.w)) - LaneInt<F>(1)}; }
     };
 
     // A bound for how far rounding moves what a ray from here meets, in each coordinate.
@@ -275,7 +279,7 @@ private:
                 const Span<F> a = through<Uniform>(p, node.bounds[0]), b = through<Uniform>(p, node.bounds[1]);
                 const F enters_a = max(a.enters, F(0.0f)), enters_b = max(b.enters, F(0.0f));
                 const LaneMask<F> in_a = enters_a <= min(a.leaves, nearest.distance), in_b = enters_b <= min(b.leaves, nearest.distance);
-                const bool any_a = any(in_a), any_b = any(in_b);
+                const bool any_a = (!Receivers || node.receivers[0] != 0) && any(in_a), any_b = (!Receivers || node.receivers[1] != 0) && any(in_b);
                 if (any_a && any_b) {
                     // First the one that more rays meet first.
                     const int first_a = __builtin_popcount(mask_bits(in_a & ((enters_a <= enters_b) | !in_b))), first_b = __builtin_popcount(mask_bits(in_b & ((enters_b < enters_a) | !in_a)));
@@ -327,11 +331,12 @@ private:
 
     bool split(const Range& range, Range& left, Range& right);
     void build_below(const Range& range);
-    void hang(const Range& range, std::int32_t what, const Box& box);
+    void hang(const Range& range, std::int32_t what);
     Box bounds_of(std::int32_t what) const;
-    void refit_node(std::int32_t node);
-    void refit_below(std::int32_t node);
-    void bound();
+    bool has_receivers(std::int32_t what) const;
+    void fit(Executor& executor);
+    void fit_node(std::int32_t node);
+    void fit_below(std::int32_t node);
     void place_triangles(Executor& executor, const World& world);
 
     Buffer<HierarchyNode> nodes_;

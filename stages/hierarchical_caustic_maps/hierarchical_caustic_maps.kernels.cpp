@@ -15,7 +15,11 @@ template struct ProgramKernels<NEPHROID_KERNEL_ISA, RootNode, NoGeometryShader, 
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, RootNode, VisitChildren, NoPixelShader>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, SameNode, VisitChildren, NoPixelShader>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, RootNode, VisitOrCombine, NoPixelShader>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, RootNode, VisitOrCombineHalves<PhotonsBelow>, NoPixelShader>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, RootNode, VisitOrCombineHalves<NodesBelow>, NoPixelShader>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, SameNode, VisitOrCombine, NoPixelShader>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, SameNode, VisitOrCombineHalves<PhotonsBelow>, NoPixelShader>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, SameNode, VisitOrCombineHalves<NodesBelow>, NoPixelShader>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, GatherPhotons, NoGeometryShader, DepositSplat>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, TransformPhotons, NoGeometryShader, DepositSplat>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, TransformCombined, NoGeometryShader, DepositSplat>;

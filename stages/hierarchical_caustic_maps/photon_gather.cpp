@@ -26,7 +26,7 @@ PhotonGather::PhotonGather(Variant variant, int photons) : variant_(variant), si
     const auto level_textures = [&](Format format, const char* name) { return Texture({.format = format, .width = side_ / 2, .height = side_ / 2, .mip_levels = top_, .name = name}); };
     pyramid_ = level_textures(Format::R32U, "validity pyramid");
     if (!merges(variant)) return;
-    combined_ = Buffer<Node<float>>(all / 4, "combined photons");
+    combined_ = Buffer<Node<float>>(variant == Variant::CombineAll ? all / 2 : all / 4, "combined photons");
     boxes_ = level_textures(Format::RGBA32F, "boxes of combined photons");
     fluxes_ = level_textures(Format::RGBA32F, "fluxes of combined photons");
 }
@@ -37,8 +37,8 @@ void PhotonGather::build_pyramid(PassDraws& draws, const PhotonPlacement& focus,
         // Only combine-all asks for what converges above the last level.
         if (merges(variant_) && (mip == 0 || variant_ == Variant::CombineAll)) {
             const std::array<TargetView, max_render_targets> targets = {pyramid_.mip(mip), boxes_.mip(mip), fluxes_.mip(mip)};
-            if (mip == 0) draws.draw_screen("validity of photons", CombinePhotons{photons, fluxes}, targets);
-            else draws.draw_screen("validity of nodes", CombineNodes{{pyramid_, mip - 1}, boxes_, fluxes_}, targets);
+            if (mip == 0) draws.draw_screen("validity of photons", CombinePhotons{photons, {focus, fluxes}}, targets);
+            else draws.draw_screen("validity of nodes", CombineNodes{{pyramid_, mip - 1}, {boxes_, fluxes_, mip - 1}}, targets);
         } else if (mip == 0) {
             draws.draw_screen("validity of photons", photons, {pyramid_.mip(mip)});
         } else {
@@ -47,7 +47,7 @@ void PhotonGather::build_pyramid(PassDraws& draws, const PhotonPlacement& focus,
     }
 }
 
-void PhotonGather::descend(PassDraws& draws, bool wide) {
+void PhotonGather::descend(PassDraws& draws, const PhotonPlacement& focus, const Texture& fluxes, bool wide) {
     const PipelineState state = points("photon traversal");
     Buffer<Node<float>>& found = photons_[wide ? 1 : 0];
     const VertexSource roots = vertex_count(root_side * root_side);
@@ -56,24 +56,27 @@ void PhotonGather::descend(PassDraws& draws, bool wide) {
     for (int level = top_, from = 0; level >= 1; --level, from ^= 1) {
         DrawCall call{.vertices = level == top_ ? roots : streamed(nodes_[from])};
         call.stream_out[0] = level == 1 ? found : nodes_[from ^ 1];
+        const auto visit_by = [&](const auto& visit) {
+            if (level == top_) draws.draw(Program{RootNode{level}, visit}, state, call);
+            else draws.draw(Program{SameNode{}, visit}, state, call);
+        };
         const VisitChildren visit{pyramid_, level, wide};
-        if (merges(variant_) && !wide && (level == 1 || variant_ == Variant::CombineAll)) {
-            call.stream_out[1] = StreamTarget(combined_, combined_any);
-            combined_any = true;
-            const VisitOrCombine combine{visit, boxes_};
-            if (level == top_) draws.draw(Program{RootNode{level}, combine}, state, call);
-            else draws.draw(Program{SameNode{}, combine}, state, call);
-        } else if (level == top_) {
-            draws.draw(Program{RootNode{level}, visit}, state, call);
-        } else {
-            draws.draw(Program{SameNode{}, visit}, state, call);
+        if (!merges(variant_) || wide || (level > 1 && variant_ == Variant::CombineLast)) {
+            visit_by(visit);
+            continue;
         }
+        call.stream_out[1] = StreamTarget(combined_, combined_any);
+        combined_any = true;
+        const VisitOrCombine combine{visit, boxes_};
+        if (variant_ == Variant::CombineLast) visit_by(combine);
+        else if (level == 1) visit_by(VisitOrCombineHalves<PhotonsBelow>{combine, {focus, fluxes}});
+        else visit_by(VisitOrCombineHalves<NodesBelow>{combine, {boxes_, fluxes_, level - 2}});
     }
 }
 
-void PhotonGather::traverse(PassDraws& draws, bool wide) {
-    descend(draws, false);
-    if (wide) descend(draws, true);
+void PhotonGather::traverse(PassDraws& draws, const PhotonPlacement& focus, const Texture& fluxes, bool wide) {
+    descend(draws, focus, fluxes, false);
+    if (wide) descend(draws, focus, fluxes, true);
 }
 
 void PhotonGather::splat(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const TargetView& flux) {
@@ -91,7 +94,7 @@ void PhotonGather::splat(PassDraws& draws, const PhotonPlacement& placement, con
     if (variant_ == Variant::Interpolated) return draws.draw(Program{InterpolateSplats{transform}, DepositInterpolated{}}, state, {.vertices = found, .render_targets = {flux}});
     draws.draw(Program{transform, DepositSplat{}}, state, {.vertices = found, .render_targets = {flux}});
     if (merges(variant_) && !placement.wide && top_ > 0)
-        draws.draw(Program{TransformCombined{boxes_, fluxes_, size.one_size, placement.map_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
+        draws.draw(Program{TransformCombined{{placement, fluxes}, boxes_, fluxes_, size.one_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
 }
 
 void PhotonGather::count_discarded(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const Texture& accounts) const {

@@ -16,7 +16,7 @@ public:
     // Section 3.1 and, where photons are combined, 3.2: the pyramid, for the map's own view and the wide one.
     void build_pyramid(PassDraws& draws, const PhotonPlacement& focus, const Texture& fluxes);
     // The photons that are there, listed; the wide map's too, if it has some.
-    void traverse(PassDraws& draws, bool wide);
+    void traverse(PassDraws& draws, const PhotonPlacement& focus, const Texture& fluxes, bool wide);
     // Splats them into a map's levels, which this clears.
     void splat(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const TargetView& flux);
     // The flux of what `splat` left out; accounts: RGBA32F, as wide as the photon buffer and a power of two high.
@@ -29,7 +29,7 @@ public:
     const Buffer<Node<float>>& combined() const { return combined_; }
 
 private:
-    void descend(PassDraws& draws, bool wide);
+    void descend(PassDraws& draws, const PhotonPlacement& focus, const Texture& fluxes, bool wide);
 
     Variant variant_ = Variant::Varying;
     int side_ = 0, top_ = 0;  // the pyramid's level of 16 x 16 nodes; the photons are level 0

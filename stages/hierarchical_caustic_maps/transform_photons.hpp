@@ -81,17 +81,34 @@ struct GatherPhotons {
 
 // Nodes whose photons are combined (section 3.2).
 struct TransformCombined {
+    PhotonsBelow photons;
     Texture2DView<Format::RGBA32F> boxes, fluxes;
     float one_size;
-    int map_size;
     template <class F>
     PhotonSplat<F> operator()(const Node<F>& node) const {
-        const LaneInt<F> x = node.x(), y = node.y(), level = node.level() - LaneInt<F>(1);
-        const vec4<F> box = boxes.fetch<F>(x, y, level);
-        const F middle_x = (box.x + box.z) * F(0.5f), middle_y = (box.y + box.w) * F(0.5f);
-        const F side(static_cast<float>(map_size)), to_clip(2.0f / static_cast<float>(map_size));
+        const LaneInt<F> x = node.x(), y = node.y(), level = node.level();
+        Combined<F> all = at<F>(x, y, level);
+        const LaneMask<F> pair = node.pair() != LaneUint<F>(alone);
+        if (any(pair)) {
+            const LaneMask<F> beside = pair & (node.pair() == LaneUint<F>(with_right));
+            const Combined<F> both = combine(all, at<F>(x + select(beside, LaneInt<F>(1), LaneInt<F>(0)), y + select(pair & !beside, LaneInt<F>(1), LaneInt<F>(0)), level));
+            all = {select(pair, both.box, all.box), select(pair, both.flux, all.flux)};
+        }
+        const F middle_x = (all.box.x + all.box.z) * F(0.5f), middle_y = (all.box.y + all.box.w) * F(0.5f);
+        const F side(static_cast<float>(photons.focus.map_size)), to_clip(2.0f / static_cast<float>(photons.focus.map_size));
         const F sum = mask_sum(middle_x, F(one_size), side) * mask_sum(middle_y, F(one_size), side);
-        return {vec4<F>(middle_x * to_clip - F(1.0f), F(1.0f) - middle_y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), vec3<F>(fluxes.fetch<F>(x, y, level)) * (F(1.0f) / sum)};
+        return {vec4<F>(middle_x * to_clip - F(1.0f), F(1.0f) - middle_y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), all.flux * (F(1.0f) / sum)};
+    }
+
+private:
+    template <class F>
+    Combined<F> at(LaneInt<F> x, LaneInt<F> y, LaneInt<F> level) const {
+        const LaneMask<F> single = level == LaneInt<F>(0);
+        Combined<F> c{};
+        if (any(!single)) c = {boxes.fetch<F>(x, y, level - LaneInt<F>(1)), vec3<F>(fluxes.fetch<F>(x, y, level - LaneInt<F>(1)))};
+        if (none(single)) return c;
+        const Combined<F> photon = photons.operator()<F>(x, y);
+        return {select(single, photon.box, c.box), select(single, photon.flux, c.flux)};
     }
 };
 

@@ -9,15 +9,19 @@
 
 namespace nephroid::stages::hierarchical {
 
-// A texel of a level of the pyramid; level 0 are the photons. 13 bits each of column and row, then the level.
+// What a combined node stands for.
+inline constexpr std::uint32_t alone = 0, with_right = 1, with_lower = 2;  // with its neighbour on the right, or below
+
+// A texel of a level of the pyramid; level 0 are the photons. 13 bits each of column and row, four of the level, two of the pair.
 template <class F>
 struct Node {
     LaneUint<F> packed;
 
-    static Node pack(LaneInt<F> x, LaneInt<F> y, int level) { return {as_uint(x | (y << 13)) | LaneUint<F>(static_cast<std::uint32_t>(level) << 26)}; }
+    static Node pack(LaneInt<F> x, LaneInt<F> y, int level, std::uint32_t pair = alone) { return {as_uint(x | (y << 13)) | LaneUint<F>(static_cast<std::uint32_t>(level) << 26 | pair << 30)}; }
     LaneInt<F> x() const { return as_int(packed & LaneUint<F>(0x1fffu)); }
     LaneInt<F> y() const { return as_int((packed >> 13) & LaneUint<F>(0x1fffu)); }
-    LaneInt<F> level() const { return as_int(packed >> 26); }
+    LaneInt<F> level() const { return as_int((packed >> 26) & LaneUint<F>(0xfu)); }
+    LaneUint<F> pair() const { return packed >> 30; }
 };
 
 // The nodes that the walk starts from, without vertex data (section 4).
@@ -59,13 +63,54 @@ struct VisitOrCombine {
     Texture2DView<Format::RGBA32F> boxes;
 
     template <class F>
+    LaneMask<F> converges(const Node<F>& node, LaneUint<F> bits) const {
+        return ((bits & LaneUint<F>(0xfu)) != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(node.x(), node.y(), visit.level - 1), {}}.converges();
+    }
+    template <class F>
     void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
         const LaneInt<F> x = in[0].x(), y = in[0].y();
         const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
-        const LaneMask<F> converges = ((bits & LaneUint<F>(0xfu)) != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(x, y, visit.level - 1), {}}.converges();
+        const LaneMask<F> all = converges(in[0], bits);
         for (int k = 0; k < 4; ++k)
-            out.template emit<0>(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1), ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !converges);
-        out.template emit<1>(in[0], converges);
+            out.template emit<0>(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1), ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !all);
+        out.template emit<1>(in[0], all);
+    }
+};
+
+// And two of its children where the four do not converge, but those two do.
+template <class Below>
+struct VisitOrCombineHalves {
+    static constexpr auto input = Topology::PointList, output = Topology::PointList;
+    static constexpr int max_vertices = 4;
+    VisitOrCombine whole;
+    Below below;
+
+    template <class F>
+    void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
+        const VisitChildren& visit = whole.visit;
+        const LaneInt<F> x = in[0].x(), y = in[0].y();
+        const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
+        const LaneMask<F> all = whole.converges(in[0], bits);
+        LaneMask<F> there[4], taken[4];
+        for (int k = 0; k < 4; ++k) {
+            there[k] = ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !all;
+            taken[k] = LaneMask<F>(false);
+        }
+        const auto child = [&](int k, std::uint32_t pair) { return Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1, pair); };
+        if (any(there[0] | there[1] | there[2] | there[3])) {
+            Combined<F> at[4];
+            for (int k = 0; k < 4; ++k) at[k] = below.template operator()<F>(child_column<F>(x, k), child_row<F>(y, k));
+            const auto converge = [&](int a, int b) { return there[a] & there[b] & combine(at[a], at[b]).converges(); };
+            const LaneMask<F> upper = converge(0, 1), lower = converge(2, 3), left = converge(0, 2), right = converge(1, 3);
+            const LaneMask<F> rows = (upper & lower) | ((upper | lower) & !(left & right));
+            const LaneMask<F> first = select(rows, upper, left), second = select(rows, lower, right);
+            out.template emit<1>({select(rows, child(0, with_right).packed, child(0, with_lower).packed)}, first);
+            out.template emit<1>({select(rows, child(2, with_right).packed, child(1, with_lower).packed)}, second);
+            taken[0] = first, taken[3] = second;
+            taken[1] = select(rows, first, second), taken[2] = select(rows, second, first);
+        }
+        for (int k = 0; k < 4; ++k) out.template emit<0>(child(k, alone), there[k] & !taken[k]);
+        out.template emit<1>(in[0], all);
     }
 };
 

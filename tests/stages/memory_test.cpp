@@ -58,10 +58,10 @@ TEST_CASE("a photon takes what it is and what finds it, not its accounts") {
         Variant variant;
         double bytes;
     };
-    // Place and flux, 32. Two lists of 4, two of nodes of 1, a pyramid of 4/3. Combined photons: a list of 1, two pyramids of 16/3.
+    // Place and flux, 32. Two lists of 4, two of nodes of 1, a pyramid of 4/3. Combined photons: a list of 2, two pyramids of 16/3.
     // In image space: four layers' two depths and two pairs of normals, the lit side's, and what stands before it.
     for (const Case& c : {Case{Tracing::Exact, Technique::Mapping, Variant::Varying, 32}, Case{Tracing::Exact, Technique::Hierarchical, Variant::Varying, 32 + 8 + 2 + 4.0 / 3},
-                          Case{Tracing::Exact, Technique::Hierarchical, Variant::CombineAll, 32 + 8 + 2 + 4.0 / 3 + 1 + 32.0 / 3}, Case{Tracing::ImageSpace, Technique::Mapping, Variant::Varying, 32 + 5 * 40 + 4}}) {
+                          Case{Tracing::Exact, Technique::Hierarchical, Variant::CombineAll, 32 + 8 + 2 + 4.0 / 3 + 2 + 32.0 / 3}, Case{Tracing::ImageSpace, Technique::Mapping, Variant::Varying, 32 + 5 * 40 + 4}}) {
         CAPTURE(static_cast<int>(c.tracing));
         CAPTURE(static_cast<int>(c.technique));
         CAPTURE(static_cast<int>(c.variant));
@@ -72,7 +72,9 @@ TEST_CASE("a photon takes what it is and what finds it, not its accounts") {
         const double few = held_by_renderer(device, scene, settings);
         settings.photons = 4096;
         const double many = held_by_renderer(device, scene, settings);
-        CHECK((many - few) / (4096.0 * 4096 - 2048.0 * 2048) == doctest::Approx(c.bytes).epsilon(0.02).scale(0));
+        // What they meet first in exact tracing, 16, is remembered of the fewer, not of the more.
+        const double remembered = c.tracing == Tracing::Exact ? 16 * 2048.0 * 2048 : 0;
+        CHECK((many - few + remembered) / (4096.0 * 4096 - 2048.0 * 2048) == doctest::Approx(c.bytes).epsilon(0.02).scale(0));
     }
 }
 

@@ -102,9 +102,6 @@ glm::dvec4 sum_of(Executor& executor, const Texture& texture, std::vector<glm::d
 
 }  // namespace
 
-// Photons along an edge for which what they meet first is remembered: 16 bytes each.
-constexpr int most_remembered = 2048;
-
 struct Renderer::Impl : PassDraws {
     const World& world;
     Settings settings;

@@ -41,6 +41,9 @@ struct Settings {
     bool leave_out = true;     // passes that change nothing; off only to see that they do not
 };
 
+// Exact tracing remembers what photons meet first, for their other branches, of no more than so many along an edge.
+inline constexpr int most_remembered = 2048;
+
 // Whether photons ask more of their object's pictures than where they land, which exact tracing does not draw.
 inline bool needs_image_space(const Settings& s) {
     return s.variant != mapping::Variant::TwoSided || (s.technique == Technique::Hierarchical && s.hierarchical_variant == hierarchical::Variant::ThinLens);

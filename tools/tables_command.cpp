@@ -27,6 +27,7 @@ struct TablesArguments {
     std::vector<std::string> rooms;
     int map_size = 1024, runs = 5, frames = 4, threads = 0, lanes = 0;
     float splat_threshold = 5;
+    std::string tracing = "exact";
 };
 
 // The paper's columns. Its times in ms are those of 256^2, 512^2 ... 4096^2 photons; a column that it does not have has none.
@@ -71,6 +72,7 @@ stages::Settings settings_of(const TablesArguments& a, const scenes::Scene& scen
     a.scene.picture_size(scene, s.width, s.height);
     s.technique = stages::Technique::Hierarchical;
     s.hierarchical_variant = variant;
+    s.tracing = a.tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
     s.splat_threshold = a.splat_threshold;
     s.photons = photons;
     s.map_size = a.map_size;
@@ -205,7 +207,7 @@ void table_5(const TablesArguments& a, Device& device) {
     for (std::size_t k = 0; k < a.photons.size(); ++k) std::printf("---:|");
     std::printf("\n");
     std::vector<std::string> rooms = a.rooms;
-    if (rooms.empty()) rooms.assign(scenes::bundled_scene_names().begin(), scenes::bundled_scene_names().end());
+    if (rooms.empty()) rooms.assign(scenes::all_bundled_scene_names().begin(), scenes::all_bundled_scene_names().end());
     for (const std::string& room : rooms) {
         SceneOptions options = a.scene;
         options.scene = room;
@@ -245,6 +247,7 @@ void add_tables_command(CLI::App& app) {
     c->add_option("--table", a->tables, "Which of them")->check(CLI::IsMember({3, 4, 5}))->delimiter(',')->capture_default_str();
     c->add_option("--photons", a->photons, "Along an edge of the photon buffer")->check(CLI::Range(16, 4096))->delimiter(',')->capture_default_str();
     c->add_option("--rooms", a->rooms, "Table 5: these scenes instead of the bundled ones")->delimiter(',');
+    c->add_option("--tracing", a->tracing, "How the photon buffer is made, as render has it; the paper's is in image space")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
     c->add_option("--map-size", a->map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
     c->add_option("--splat-threshold", a->splat_threshold, "From twice so many texels on a splat goes to a coarser level of the map")->check(CLI::Range(2.0, 64.0))->capture_default_str();
     c->add_option("--runs", a->runs, "Table 3: times are those of the fastest of so many runs")->check(CLI::Range(1, 10000))->capture_default_str();

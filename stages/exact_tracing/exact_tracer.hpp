@@ -192,8 +192,9 @@ private:
         } else {
             const LaneMask<F> gambles = meets & ray.by_chance & !total, splits = meets & !ray.by_chance & !total;
             if (!light) {
-                // Noise in every pixel would cost more than what little is reflected there.
-                ledger.scale(gambles, vec3<F>(F(1.0f) - reflectance), ledger.not_followed);
+                // Noise in every pixel would cost more than the lesser part is worth: only the greater one is looked at.
+                reflects = reflects | (gambles & (reflectance > F(0.5f)));
+                ledger.scale(gambles, vec3<F>(max(reflectance, F(1.0f) - reflectance)), ledger.not_followed);
             } else if (any(gambles)) {
                 const F chance = uniform_from_bits<F>(random_bits<LaneUint<F>>(seed, ray.index, static_cast<std::uint32_t>(event))[0]);
                 reflects = reflects | (gambles & (chance < reflectance));

@@ -27,7 +27,7 @@ struct SplatSize {
     template <class F>
     F diameter(const PhotonPlacement& placement, const PhotonPlacement::Place<F>& at, const vec3<F>& position, LaneInt<F> x, LaneInt<F> y) const {
         if (has_one_size(variant)) return F(one_size);
-        if (variant == Variant::ThinLens) return max(lens.spacing(placement, at, position, x, y) * F(overlap), F(narrowest));
+        if (variant == Variant::ThinLens) return width_for(lens.spacing(placement, at, position, x, y));
         const PhotonPlacement::Neighbour<F> row = placement.neighbour(at, x, y, 1, 0), column = placement.neighbour(at, x, y, 0, 1);
         F squared = max(row.squared_distance, column.squared_distance);
         if (form == SplatForm::Area) {
@@ -35,7 +35,13 @@ struct SplatSize {
             const F area = abs(row.x * column.y - row.y * column.x);
             squared = select((row.squared_distance > F(0.0f)) & (column.squared_distance > F(0.0f)), area, squared);
         }
-        return max(sqrt(squared) * F(overlap), F(narrowest));
+        return width_for(sqrt(squared));
+    }
+
+    // For neighbours so far apart; closer than a texel, they are too many to show.
+    template <class F>
+    static F width_for(F apart) {
+        return max(apart, F(1.0f)) * F(overlap);
     }
 
     float widest() const { return threshold * static_cast<float>(1 << map_levels); }

@@ -124,7 +124,7 @@ struct Renderer::Impl : PassDraws {
     Texture occluders;
     // Exact tracing
     std::shared_ptr<TracedWorld> traced;
-    Texture seen_hits, lit_hits;  // what looks and photons meet first, which is the same for all branches; empty: looked for again
+    Texture seen_hits, lit_hits;  // what looks and photons meet first, which is the same for all branches; photons that are too many have none
     bool seen_hits_known = false;
     std::pair<int, int> lit_hits_of;  // light and mesh
     // Of the caustic map at hand, with all that it takes: receivers are lit by it before the next one's photons are followed.

@@ -38,8 +38,8 @@ struct MeetSeen {
     }
 };
 
-// One branch of them. Where looks part again, behind the surface inside which is the third branch, they go one way by chance. The
-// other pixels are discarded.
+// One branch of them. Where looks part again, behind the surface inside which is the third branch, they go the way that most of
+// the light takes. The other pixels are discarded.
 struct TraceSeenExactly {
     ExactTracer tracer;  // of looks
     SpecularLooks looks;

@@ -38,10 +38,11 @@ struct SplatSize {
         return width_for(sqrt(squared));
     }
 
-    // For neighbours so far apart; closer than a texel, they are too many to show.
+    // For neighbours so far apart. Those closer than a texel get the width of those a texel apart; closer than half a texel, they
+    // do not show in the narrowest splats either.
     template <class F>
     static F width_for(F apart) {
-        return max(apart, F(1.0f)) * F(overlap);
+        return select(apart < F(0.5f), F(narrowest), max(apart, F(1.0f)) * F(overlap));
     }
 
     float widest() const { return threshold * static_cast<float>(1 << map_levels); }

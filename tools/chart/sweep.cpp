@@ -74,7 +74,7 @@ constexpr Entry entries[] = {
     {Default, "exact", "--technique hierarchical --tracing exact --photons 64^2 --map-size 128"},
     {Default, "exact", "--technique hierarchical --tracing exact --photons 128^2 --map-size 256"},
     {Default, "exact", "--technique hierarchical --tracing exact --photons 256^2 --map-size 512"},
-    {Full, "exact", "--technique hierarchical --tracing exact --photons 512^2 --map-size 1024"},
+    {Default, "exact", "--technique hierarchical --tracing exact --photons 512^2 --map-size 1024"},
     {Default, "exact", "--technique hierarchical --tracing exact --photons 1024^2 --map-size 1024"},
     {Default, "exact", "--technique hierarchical --tracing exact --photons 256^2 --map-size 512 --samples 4"},
     {Full, "exact", "--technique hierarchical --tracing exact --photons 2048^2 --map-size 2048 --samples 4"},

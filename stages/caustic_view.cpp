@@ -89,10 +89,8 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
         if (flux > 0 || step == 1) break;
     }
     Fit fit;
-    if (!(flux > 0)) {
-        fit.hidden = any_photon(executor, positions, [](const float* p) { return p[3] < 0; });
-        return fit;
-    }
+    fit.hidden = any_photon(executor, positions, [](const float* p) { return p[3] < 0; });
+    if (!(flux > 0)) return fit;
     fit.empty = false;
     if (parallel) {
         fit.view = make_view(scene_centre, light.direction);
@@ -161,7 +159,6 @@ CausticViewFitter::Fit CausticViewFitter::fit(Executor& executor, const Texture&
     fit.view.centre = {static_cast<float>((left + right) * 0.5), static_cast<float>((bottom + top) * 0.5)};
     fit.view.half = {static_cast<float>(std::max((right - left) * 0.5 * margin, least)), static_cast<float>(std::max((top - bottom) * 0.5 * margin, least))};
 
-    fit.hidden = any_photon(executor, positions, [](const float* p) { return p[3] < 0; });
     fit.outside = any_photon(executor, positions, [&](const float* p) {
         constexpr float inside = 1 - focus_border;
         if (!(p[3] > 0)) return false;

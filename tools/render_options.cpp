@@ -48,8 +48,8 @@ int parse_photons(const std::string& text) {
     return side;
 }
 
-// A photon's place and flux; in image space a texel of every layer of its object, else what it meets first; lists and a pyramid to find it by. However
-// many lights there are.
+// A photon's place and flux; in image space a texel of every layer of its object, else what it meets first; lists and a pyramid
+// to find it by. However many lights there are.
 double bytes_per_photon(const stages::Settings& s) {
     double bytes = 32;
     if (s.tracing == stages::Tracing::ImageSpace) bytes += 40 * (s.solid_layers + 1) + 4;

@@ -1,10 +1,17 @@
 // Where a buffer's photons go on a caustic map: in the map's own view, or, what that does not hold, on the wide one; and how
 // far from their neighbours they lie there.
 #pragma once
+#include "pipeline/math.hpp"
 #include "pipeline/texture_view.hpp"
 #include "stages/caustic_view.hpp"
 
 namespace nephroid::stages {
+
+// Where the middle of a point sprite is drawn that is to be at a place, in texels.
+template <class F>
+inline F snapped(F texels) {
+    return round_even(texels * F(256.0f)) * F(1.0f / 256.0f);
+}
 
 struct PhotonPlacement {
     Texture2DView<Format::RGBA32F> positions;

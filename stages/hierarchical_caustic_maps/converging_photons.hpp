@@ -37,10 +37,14 @@ struct PhotonsBelow {
 };
 struct NodesBelow {
     Texture2DView<Format::RGBA32F> boxes, fluxes;
-    int mip;
+    int mip = 0;
     template <class F>
     Combined<F> operator()(LaneInt<F> x, LaneInt<F> y) const {
-        return {boxes.fetch<F>(x, y, mip), vec3<F>(fluxes.fetch<F>(x, y, mip))};
+        return at<F>(x, y, LaneInt<F>(mip));
+    }
+    template <class F>
+    Combined<F> at(LaneInt<F> x, LaneInt<F> y, LaneInt<F> of) const {
+        return {boxes.fetch<F>(x, y, of), vec3<F>(fluxes.fetch<F>(x, y, of))};
     }
 };
 

@@ -67,10 +67,9 @@ void PhotonGather::descend(PassDraws& draws, const PhotonPlacement& focus, const
         }
         call.stream_out[1] = StreamTarget(combined_, combined_any);
         combined_any = true;
-        const VisitOrCombine combine{visit, boxes_};
-        if (variant_ == Variant::CombineLast) visit_by(combine);
-        else if (level == 1) visit_by(VisitOrCombineHalves<PhotonsBelow>{combine, {focus, fluxes}});
-        else visit_by(VisitOrCombineHalves<NodesBelow>{combine, {boxes_, fluxes_, level - 2}});
+        if (variant_ == Variant::CombineLast) visit_by(VisitOrCombine<NoPairs>{visit, boxes_, {}});
+        else if (level == 1) visit_by(VisitOrCombine<PhotonsBelow>{visit, boxes_, {focus, fluxes}});
+        else visit_by(VisitOrCombine<NodesBelow>{visit, boxes_, {boxes_, fluxes_, level - 2}});
     }
 }
 
@@ -94,7 +93,7 @@ void PhotonGather::splat(PassDraws& draws, const PhotonPlacement& placement, con
     if (variant_ == Variant::Interpolated) return draws.draw(Program{InterpolateSplats{transform}, DepositInterpolated{}}, state, {.vertices = found, .render_targets = {flux}});
     draws.draw(Program{transform, DepositSplat{}}, state, {.vertices = found, .render_targets = {flux}});
     if (merges(variant_) && !placement.wide && top_ > 0)
-        draws.draw(Program{TransformCombined{{placement, fluxes}, boxes_, fluxes_, size.one_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
+        draws.draw(Program{TransformCombined{{placement, fluxes}, {boxes_, fluxes_}, size.one_size}, DepositSplat{}}, state, {.vertices = streamed(combined_), .render_targets = {flux}});
 }
 
 void PhotonGather::count_discarded(PassDraws& draws, const PhotonPlacement& placement, const Texture& fluxes, const SplatSize& size, const Texture& accounts) const {

@@ -4,7 +4,7 @@
 // texels, by which a photon's flux is divided, has a closed form. Above all its sum over evenly spaced photons is nearly flat,
 // however their grid and that of the texels lie to each other: what is left of the grids shows as rings in smooth light.
 #pragma once
-#include "pipeline/math.hpp"
+#include "stages/caustic_map/photon_placement.hpp"
 
 namespace nephroid::stages::hierarchical {
 
@@ -26,12 +26,6 @@ template <class F>
 inline F falling_squares(F a, F b, F most) {
     const F m = max(min(ceil(a / b), most), F(0.0f));
     return m * (a * (a - b * (m - F(1.0f))) + b * b * ((m - F(1.0f)) * (m + m - F(1.0f)) * F(1.0f / 6.0f)));
-}
-
-// Where a point sprite's middle is drawn.
-template <class F>
-inline F snapped(F texels) {
-    return round_even(texels * F(256.0f)) * F(1.0f / 256.0f);
 }
 
 // The mask's sum along one axis over the texels of 0..side - 1 that a splat of this width covers: on either side of its centre

@@ -82,7 +82,7 @@ struct GatherPhotons {
 // Nodes whose photons are combined (section 3.2).
 struct TransformCombined {
     PhotonsBelow photons;
-    Texture2DView<Format::RGBA32F> boxes, fluxes;
+    NodesBelow nodes;
     float one_size;
     template <class F>
     PhotonSplat<F> operator()(const Node<F>& node) const {
@@ -105,7 +105,7 @@ private:
     Combined<F> at(LaneInt<F> x, LaneInt<F> y, LaneInt<F> level) const {
         const LaneMask<F> single = level == LaneInt<F>(0);
         Combined<F> c{};
-        if (any(!single)) c = {boxes.fetch<F>(x, y, level - LaneInt<F>(1)), vec3<F>(fluxes.fetch<F>(x, y, level - LaneInt<F>(1)))};
+        if (any(!single)) c = nodes.at<F>(x, y, level - LaneInt<F>(1));
         if (none(single)) return c;
         const Combined<F> photon = photons.operator()<F>(x, y);
         return {select(single, photon.box, c.box), select(single, photon.flux, c.flux)};

@@ -4,6 +4,8 @@
 // Known differences from the paper: a child is looked at before it is put out, not after, so no list holds nodes in vain; and
 // nodes whose photons converge leave by a second stream, which the paper's GPU did not have: it marked them in the one there was.
 #pragma once
+#include <type_traits>
+
 #include "stages/hierarchical_caustic_maps/converging_photons.hpp"
 #include "stages/hierarchical_caustic_maps/variant.hpp"
 
@@ -55,62 +57,45 @@ struct VisitChildren {
     }
 };
 
-// The same where photons are combined: a node whose photons converge goes to the second stream, and its children are left.
+// The same where photons are combined: a node whose photons converge goes to the second stream, and its children are left. Below:
+// what tells of a child, so that two of them are combined where all four do not converge, but those two do; or NoPairs.
+struct NoPairs {};
+template <class Below>
 struct VisitOrCombine {
     static constexpr auto input = Topology::PointList, output = Topology::PointList;
     static constexpr int max_vertices = 4;
     VisitChildren visit;
     Texture2DView<Format::RGBA32F> boxes;
-
-    template <class F>
-    LaneMask<F> converges(const Node<F>& node, LaneUint<F> bits) const {
-        return ((bits & LaneUint<F>(0xfu)) != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(node.x(), node.y(), visit.level - 1), {}}.converges();
-    }
-    template <class F>
-    void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
-        const LaneInt<F> x = in[0].x(), y = in[0].y();
-        const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
-        const LaneMask<F> all = converges(in[0], bits);
-        for (int k = 0; k < 4; ++k)
-            out.template emit<0>(Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1), ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !all);
-        out.template emit<1>(in[0], all);
-    }
-};
-
-// And two of its children where the four do not converge, but those two do.
-template <class Below>
-struct VisitOrCombineHalves {
-    static constexpr auto input = Topology::PointList, output = Topology::PointList;
-    static constexpr int max_vertices = 4;
-    VisitOrCombine whole;
     Below below;
 
     template <class F>
     void operator()(const std::array<Node<F>, 1>& in, Emitter<Node<F>, Node<F>>& out) const {
-        const VisitChildren& visit = whole.visit;
         const LaneInt<F> x = in[0].x(), y = in[0].y();
-        const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x);
-        const LaneMask<F> all = whole.converges(in[0], bits);
-        LaneMask<F> there[4], taken[4];
-        for (int k = 0; k < 4; ++k) {
-            there[k] = ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !all;
-            taken[k] = LaneMask<F>(false);
-        }
+        const LaneUint<F> bits = float_bits(visit.pyramid.fetch<F>(x, y, visit.level - 1).x) & LaneUint<F>(0xfu);
+        const LaneMask<F> all = (bits != LaneUint<F>(0u)) & Combined<F>{boxes.fetch<F>(x, y, visit.level - 1), {}}.converges();
+        LaneMask<F> left_over[4];
+        for (int k = 0; k < 4; ++k) left_over[k] = ((bits & LaneUint<F>(1u << k)) != LaneUint<F>(0u)) & !all;
         const auto child = [&](int k, std::uint32_t pair) { return Node<F>::pack(child_column<F>(x, k), child_row<F>(y, k), visit.level - 1, pair); };
-        if (any(there[0] | there[1] | there[2] | there[3])) {
-            Combined<F> at[4];
-            for (int k = 0; k < 4; ++k) at[k] = below.template operator()<F>(child_column<F>(x, k), child_row<F>(y, k));
-            const auto converge = [&](int a, int b) { return there[a] & there[b] & combine(at[a], at[b]).converges(); };
-            const LaneMask<F> upper = converge(0, 1), lower = converge(2, 3), left = converge(0, 2), right = converge(1, 3);
-            const LaneMask<F> rows = (upper & lower) | ((upper | lower) & !(left & right));
-            const LaneMask<F> first = select(rows, upper, left), second = select(rows, lower, right);
-            out.template emit<1>({select(rows, child(0, with_right).packed, child(0, with_lower).packed)}, first);
-            out.template emit<1>({select(rows, child(2, with_right).packed, child(1, with_lower).packed)}, second);
-            taken[0] = first, taken[3] = second;
-            taken[1] = select(rows, first, second), taken[2] = select(rows, second, first);
+        if constexpr (!std::is_same_v<Below, NoPairs>) {
+            if (any(left_over[0] | left_over[1] | left_over[2] | left_over[3])) combine_pairs(x, y, child, left_over, out);
         }
-        for (int k = 0; k < 4; ++k) out.template emit<0>(child(k, alone), there[k] & !taken[k]);
+        for (int k = 0; k < 4; ++k) out.template emit<0>(child(k, alone), left_over[k]);
         out.template emit<1>(in[0], all);
+    }
+
+private:
+    template <class F>
+    void combine_pairs(LaneInt<F> x, LaneInt<F> y, const auto& child, LaneMask<F> (&left_over)[4], Emitter<Node<F>, Node<F>>& out) const {
+        Combined<F> at[4];
+        for (int k = 0; k < 4; ++k) at[k] = below.template operator()<F>(child_column<F>(x, k), child_row<F>(y, k));
+        const auto converge = [&](int a, int b) { return left_over[a] & left_over[b] & combine(at[a], at[b]).converges(); };
+        const LaneMask<F> upper = converge(0, 1), lower = converge(2, 3), left = converge(0, 2), right = converge(1, 3);
+        const LaneMask<F> rows = (upper & lower) | ((upper | lower) & !(left & right));
+        const LaneMask<F> first = select(rows, upper, left), second = select(rows, lower, right);
+        out.template emit<1>({select(rows, child(0, with_right).packed, child(0, with_lower).packed)}, first);
+        out.template emit<1>({select(rows, child(2, with_right).packed, child(1, with_lower).packed)}, second);
+        const LaneMask<F> taken[4] = {first, select(rows, first, second), select(rows, second, first), second};
+        for (int k = 0; k < 4; ++k) left_over[k] = left_over[k] & !taken[k];
     }
 };
 

@@ -45,11 +45,11 @@ struct PlacePhoton {
     // The mask's sum over the texels that a sprite covers along one axis.
     template <class F>
     F mask_sum(F centre, F width) const {
-        const F snapped = round_even(centre * F(256.0f)) * F(1.0f / 256.0f), first = ceil(snapped - F(0.5f) * width - F(0.5f)), to_mask = F(2.0f) / width;
-        const F end = snapped + F(0.5f) * width;
+        const F at = snapped(centre), first = ceil(at - F(0.5f) * width - F(0.5f)), to_mask = F(2.0f) / width;
+        const F end = at + F(0.5f) * width;
         F sum(0.0f);
         for (int k = 0;; ++k) {
-            const F texel = first + F(static_cast<float>(k)), middle = texel + F(0.5f), offset = (middle - snapped) * to_mask;
+            const F texel = first + F(static_cast<float>(k)), middle = texel + F(0.5f), offset = (middle - at) * to_mask;
             if (none(middle < end)) return sum;
             const LaneMask<F> covered = (middle < end) & (texel >= F(0.0f)) & (texel < F(static_cast<float>(placement.map_size)));
             sum = sum + select(covered, exp(F(-2.0f) * offset * offset), F(0.0f));

@@ -306,7 +306,7 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
         wide_sides = layered(Format::RGBA32F, wide, 6, "wide map receivers");
         map_accounts = target(Format::RGBA32F, size, size, "map accounts");
         wide_accounts = target(Format::RGBA32F, wide, wide, "wide map accounts");
-        map.irradiance = layered(Format::RGBA32F, size, 1, "caustic map");
+        map.irradiance = layered(Format::RGBA32F, size, 1, "caustic map", 0);
         map.depth = layered(Format::D32F, size, 1, "caustic map depth");
         map.wide_irradiance = layered(Format::RGBA32F, wide, 6, "wide caustic map");
         map.wide_depth = layered(Format::D32F, wide, 6, "wide caustic map depth");
@@ -595,6 +595,8 @@ void Renderer::Impl::resolve(const Pass& pass) {
     const Light& light = world.lights[pass.light];
     if (map.fit.empty) return;
     resolve_layer(map_flux, map_levels(), map_sides, map.depth, map.irradiance, map.fit.view, 0, settings.map_size);
+    for (int level = 1; level < map.irradiance.mip_levels(); ++level)
+        draw_screen("halve caustic map", HalveIrradiance{map.irradiance, level - 1}, {map.irradiance.mip(level, 0)});
     if (!map.fit.outside) return;
     const CubeViews faces = cube_views(light.position);
     for (int layer = 0; layer < wide_layers(light); ++layer)
@@ -729,6 +731,7 @@ void Renderer::Impl::caustic_light(const Pass& pass) {
     CausticMap from;
     from.focus = map.fit.view;
     from.focus_irradiance = map.irradiance;
+    from.levels = map.irradiance.mip_levels();
     from.focus_depth = map.depth;
     from.size = settings.map_size;
     from.has_focus = !map.fit.empty;

@@ -22,7 +22,7 @@ struct Settings {
     mapping::Variant variant = mapping::Variant::TwoSided;  // Hierarchical: TwoSided
     // Hierarchical
     hierarchical::Variant hierarchical_variant = hierarchical::Variant::Varying;
-    hierarchical::SplatForm splat_form = hierarchical::SplatForm::MaximumDistance;
+    hierarchical::SplatForm splat_form = hierarchical::SplatForm::Extents;
     float splat_threshold = 5;      // texels; from twice this width on a splat goes to a coarser level of its map
     bool discard_wide_splats = false;  // those that are too wide for the coarsest level, which else takes them
     // Both

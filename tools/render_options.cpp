@@ -91,8 +91,8 @@ void RenderOptions::add_to(CLI::App& c) {
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
     c.add_option("--map-size", settings.map_size, "Texels along an edge of a caustic map")->check(CLI::Range(16, 8192))->capture_default_str();
     c.add_option("--splat-threshold", settings.splat_threshold, "varying: from twice so many texels on a splat goes to a coarser level of the map")->check(number_in(2, 64))->capture_default_str();
-    c.add_option("--splat-form", splat_form, "varying, varying-single, interpolated: splats as wide as the farther neighbour is away, or as the area between neighbours asks for")
-        ->check(CLI::IsMember({"max-distance", "area"}))->capture_default_str();
+    c.add_option("--splat-form", splat_form, "varying, varying-single, interpolated: splats as wide along each axis of the map as neighbours are apart, as wide as the farther neighbour is away, or as the area between neighbours asks for")
+        ->check(CLI::IsMember({"extents", "max-distance", "area"}))->capture_default_str();
     c.add_flag("--discard-wide-splats", settings.discard_wide_splats, "varying, varying-single: leave out what is too wide for the map's coarsest level");
     c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing, or the variant, asks for")->check(number_in(0, 64))->capture_default_str();
     c.add_option("--bounces", settings.bounces, "Specular surfaces that light meets, at most")->check(CLI::Range(1, 64))->capture_default_str();
@@ -119,7 +119,8 @@ void RenderOptions::finish_variant() {
     }
     const stages::hierarchical::Variant v = settings.hierarchical_variant = check(stages::hierarchical::named_variants);
     settings.variant = stages::mapping::Variant::TwoSided;
-    settings.splat_form = splat_form == "area" ? stages::hierarchical::SplatForm::Area : stages::hierarchical::SplatForm::MaximumDistance;
+    for (const auto& [name, form] : stages::hierarchical::named_splat_forms)
+        if (splat_form == name) settings.splat_form = form;
     constexpr int step = stages::hierarchical::map_size_step;
     if (stages::hierarchical::levels_of(v) > 1 && settings.map_size % step != 0)
         throw std::runtime_error("--map-size: --variant " + variant + " needs a multiple of " + std::to_string(step) + ", got " + std::to_string(settings.map_size));

@@ -9,7 +9,7 @@
 namespace nephroid {
 
 struct RenderOptions : SceneOptions {
-    std::string technique = "mapping", variant, splat_form = "max-distance", tracing = "image-space", intersection = "bisection";
+    std::string technique = "mapping", variant, splat_form = "extents", tracing = "image-space", intersection = "bisection";
     std::string photons = "1024^2";
     int samples = 1, threads = 0, lanes = 0;
     stages::Settings settings;

@@ -7,4 +7,5 @@ namespace nephroid {
 using namespace stages;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, ProjectSurface, NoGeometryShader, StoreReceiverSide>;
 template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, ResolveIrradiance>;
+template struct ProgramKernels<NEPHROID_KERNEL_ISA, CoverScreen, NoGeometryShader, HalveIrradiance>;
 }  // namespace nephroid

@@ -57,4 +57,31 @@ struct ResolveIrradiance {
     }
 };
 
+// A level of a map's irradiance from the next finer one: the mean of those of four texels that lie on the same surface as most.
+struct HalveIrradiance {
+    Texture2DArrayView<Format::RGBA32F> irradiance;  // W/m^2, and the surface's id, 0 where there is none
+    int finer;
+    template <class F>
+    vec4<F> operator()(const PixelInput<F>& pixel) const {
+        const LaneInt<F> x = to_int_in_range(pixel.position.x) * 2, y = to_int_in_range(pixel.position.y) * 2;
+        vec4<F> texels[4];
+        for (int k = 0; k < 4; ++k) texels[k] = irradiance.fetch<F>(x + LaneInt<F>(k & 1), y + LaneInt<F>(k >> 1), LaneInt<F>(0), finer);
+        vec4<F> mean(F(0.0f));
+        F most(0.0f);
+        for (const vec4<F>& candidate : texels) {
+            vec3<F> sum(F(0.0f));
+            F count(0.0f);
+            for (const vec4<F>& texel : texels) {
+                const LaneMask<F> same = texel.w == candidate.w;
+                sum = sum + select(same, vec3<F>(texel), vec3<F>(F(0.0f)));
+                count = count + select(same, F(1.0f), F(0.0f));
+            }
+            const LaneMask<F> better = (candidate.w > F(0.0f)) & (count > most);
+            mean = select(better, vec4<F>(sum / count, candidate.w), mean);
+            most = select(better, count, most);
+        }
+        return mean;
+    }
+};
+
 }  // namespace nephroid::stages

@@ -76,19 +76,20 @@ struct PhotonPlacement {
     template <class F>
     struct Neighbour {
         F x, y, squared_distance;
+        LaneMask<F> there;
     };
     template <class F>
     Neighbour<F> neighbour(const Place<F>& at, LaneInt<F> x, LaneInt<F> y, int along_x, int along_y) const {
         constexpr float none_there = 1e30f;
-        Neighbour<F> nearer{F(0.0f), F(0.0f), F(none_there)};
+        Neighbour<F> nearer{F(0.0f), F(0.0f), F(none_there), LaneMask<F>(false)};
         for (const int side : {-1, 1}) {
             const vec4<F> photon = positions.fetch<F>(x + LaneInt<F>(side * along_x), y + LaneInt<F>(side * along_y));
             const Place<F> p = place(vec3<F>(photon));
             const F dx = p.x - at.x, dy = p.y - at.y, squared = dx * dx + dy * dy;
             const LaneMask<F> is_nearer = landed(photon.w) & p.in_front & (p.layer == at.layer) & (squared < nearer.squared_distance);
-            nearer = {select(is_nearer, dx, nearer.x), select(is_nearer, dy, nearer.y), select(is_nearer, squared, nearer.squared_distance)};
+            nearer = {select(is_nearer, dx, nearer.x), select(is_nearer, dy, nearer.y), select(is_nearer, squared, nearer.squared_distance), LaneMask<F>(nearer.there | is_nearer)};
         }
-        nearer.squared_distance = select(nearer.squared_distance < F(none_there), nearer.squared_distance, F(0.0f));
+        nearer.squared_distance = select(nearer.there, nearer.squared_distance, F(0.0f));
         return nearer;
     }
 };

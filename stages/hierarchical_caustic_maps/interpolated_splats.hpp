@@ -28,7 +28,7 @@ struct InterpolateSplats {
         InterpolatedSplat<F> out{vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f)), LaneInt<F>(0), F(interpolated_widest), F(1.0f), F(1.0f), vec3<F>(F(0.0f)), vec3<F>(F(0.0f))};  // nowhere
         const TransformedPhoton<F> p = transform.photon<F>(node.x(), node.y());
         if (none(p.drawn)) return out;
-        const F octaves = min(max(p.diameter * F(1.0f / narrowest), F(1.0f)), F(interpolated_widest / narrowest));
+        const F octaves = min(max(max(p.widths.x, p.widths.y) * F(1.0f / narrowest), F(1.0f)), F(interpolated_widest / narrowest));
         const LaneInt<F> below = min(as_int(float_bits(octaves) >> 23) - LaneInt<F>(127), LaneInt<F>(interpolated_sizes - 2));
         const F size = bits_float(as_uint(below + LaneInt<F>(127)) << 23), weight = octaves / size - F(1.0f);  // 0 at the finer size, 1 at the coarser
         const F finer = size * F(narrowest), coarser = finer + finer, side(static_cast<float>(transform.placement.map_size));

@@ -5,7 +5,9 @@
 // texels is that ratio, with the texel's solid angle for omega_i. So neighbours are looked at where they fall on the map.
 //
 // Known differences: of the two neighbours along a row or a column the nearer one counts, since the other may be beyond an
-// edge; and a splat is never wider than the coarsest level takes, also where it goes to the finest.
+// edge; a splat is as long along each axis of the map as they are apart along it, so that light that spreads one way is not
+// blurred the other way; and a splat is never wider than the coarsest level takes, also where it goes to the finest. A photon
+// whose neighbours all went elsewhere is one of few that came its way: it is spread as widely as that, since it would be a speck.
 #pragma once
 #include "stages/caustic_map/photon_placement.hpp"
 #include "stages/hierarchical_caustic_maps/splat_mask.hpp"
@@ -23,19 +25,21 @@ struct SplatSize {
     bool discards_wide = false;  // the paper: what would go beyond the last level is left out
     ThinLens lens;
 
-    // In texels of the finest level; x and y: the photon's texel of the buffer.
+    // Along the map's axes, in texels of the finest level; x and y: the photon's texel of the buffer.
     template <class F>
-    F diameter(const PhotonPlacement& placement, const PhotonPlacement::Place<F>& at, const vec3<F>& position, LaneInt<F> x, LaneInt<F> y) const {
-        if (has_one_size(variant)) return F(one_size);
-        if (variant == Variant::ThinLens) return width_for(lens.spacing(placement, at, position, x, y));
+    vec2<F> widths(const PhotonPlacement& placement, const PhotonPlacement::Place<F>& at, const vec3<F>& position, LaneInt<F> x, LaneInt<F> y) const {
+        if (has_one_size(variant)) return vec2<F>(F(one_size));
+        if (variant == Variant::ThinLens) return vec2<F>(width_for(lens.spacing(placement, at, position, x, y)));
         const PhotonPlacement::Neighbour<F> row = placement.neighbour(at, x, y, 1, 0), column = placement.neighbour(at, x, y, 0, 1);
+        const LaneMask<F> lonely = !(row.there | column.there);
+        if (form == SplatForm::Extents) return {select(lonely, F(widest()), width_for(max(abs(row.x), abs(column.x)))), select(lonely, F(widest()), width_for(max(abs(row.y), abs(column.y))))};
         F squared = max(row.squared_distance, column.squared_distance);
         if (form == SplatForm::Area) {
             // Where one of the two is not there, all there is is the other.
             const F area = abs(row.x * column.y - row.y * column.x);
-            squared = select((row.squared_distance > F(0.0f)) & (column.squared_distance > F(0.0f)), area, squared);
+            squared = select(row.there & column.there, area, squared);
         }
-        return width_for(sqrt(squared));
+        return vec2<F>(select(lonely, F(widest()), width_for(sqrt(squared))));
     }
 
     // For neighbours so far apart. Those closer than a texel get the width of those a texel apart; closer than half a texel, they
@@ -47,21 +51,28 @@ struct SplatSize {
 
     float widest() const { return threshold * static_cast<float>(1 << map_levels); }
 
+    // A width there: one that covers some texel's middle.
+    template <class F>
+    F in_level(F width, F scale) const {
+        return max(min(width, F(widest())) * scale, F(narrowest));
+    }
+
     template <class F>
     struct Size {
         LaneInt<F> level;
         F scale;   // of lengths in that level
-        F width;   // there, texels
+        vec2<F> widths;  // there, texels
         LaneMask<F> discarded;
     };
     template <class F>
-    Size<F> choose(F diameter) const {
+    Size<F> choose(const vec2<F>& widths) const {
+        const F diameter = max(widths.x, widths.y);
         // photonMipLevel = trunc(log2(max(1, D / 5.0))): the exponent of a float.
         const LaneInt<F> wanted = as_int(float_bits(max(diameter * F(1.0f / threshold), F(1.0f))) >> 23) - LaneInt<F>(127);
         const LaneMask<F> beyond = wanted >= LaneInt<F>(map_levels);
         const LaneInt<F> level = min(wanted, LaneInt<F>(levels - 1));
         const F scale = bits_float(as_uint(LaneInt<F>(127) - level) << 23);
-        return {level, scale, min(diameter, F(widest())) * scale, LaneMask<F>(beyond & LaneMask<F>(discards_wide))};
+        return {level, scale, {in_level(widths.x, scale), in_level(widths.y, scale)}, LaneMask<F>(beyond & LaneMask<F>(discards_wide))};
     }
 };
 

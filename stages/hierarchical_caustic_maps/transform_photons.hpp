@@ -12,7 +12,8 @@ struct PhotonSplat {
     LaneInt<F> layer, level;
     F point_size;
     vec3<F> flux;  // W, divided by the mask's sum
-    static constexpr auto varyings = std::tuple{flat("flux", &PhotonSplat::flux)};
+    vec2<F> to_mask;  // from the sprite's coordinates: it is as wide as the mask along the longer axis
+    static constexpr auto varyings = std::tuple{flat("flux", &PhotonSplat::flux), flat("to_mask", &PhotonSplat::to_mask)};
 };
 
 // A photon, before it is a splat of some kind.
@@ -20,7 +21,7 @@ template <class F>
 struct TransformedPhoton {
     LaneMask<F> drawn;
     PhotonPlacement::Place<F> at;
-    F diameter;
+    vec2<F> widths;  // texels of the finest level
     SplatSize::Size<F> size;
     vec3<F> flux;  // W
 };
@@ -41,23 +42,24 @@ struct TransformPhotons {
         out.drawn = out.drawn & (share > F(0.0f));
         if (none(out.drawn)) return out;
         out.at = placement.place(position);
-        out.diameter = size.diameter(placement, out.at, position, x, y);
-        out.size = size.choose(out.diameter);
+        out.widths = size.widths(placement, out.at, position, x, y);
+        out.size = size.choose(out.widths);
         out.flux = vec3<F>(fluxes.fetch<F>(x, y)) * share;
         return out;
     }
     template <class F>
     PhotonSplat<F> splat(LaneInt<F> x, LaneInt<F> y) const {
-        PhotonSplat<F> out{vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(1.0f), vec3<F>(F(0.0f))};  // nowhere
+        PhotonSplat<F> out{vec4<F>(F(2.0f), F(2.0f), F(2.0f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(1.0f), vec3<F>(F(0.0f)), vec2<F>(F(1.0f))};  // nowhere
         const TransformedPhoton<F> p = photon<F>(x, y);
         const LaneMask<F> drawn = p.drawn & !p.size.discarded;
         if (none(drawn)) return out;
         const F side = F(static_cast<float>(placement.map_size)) * p.size.scale;
-        const F sum = mask_sum(p.at.x * p.size.scale, p.size.width, side) * mask_sum(p.at.y * p.size.scale, p.size.width, side);
+        const F sum = mask_sum(p.at.x * p.size.scale, p.size.widths.x, side) * mask_sum(p.at.y * p.size.scale, p.size.widths.y, side);
         out.position = select(drawn, p.at.clip, out.position);
         out.layer = select(drawn, p.at.layer, out.layer);
         out.level = select(drawn, p.size.level, out.level);
-        out.point_size = p.size.width;
+        out.point_size = max(p.size.widths.x, p.size.widths.y);
+        out.to_mask = out.point_size / p.size.widths;
         out.flux = p.flux * (F(1.0f) / sum);
         return out;
     }
@@ -97,7 +99,7 @@ struct TransformCombined {
         const F middle_x = (all.box.x + all.box.z) * F(0.5f), middle_y = (all.box.y + all.box.w) * F(0.5f);
         const F side(static_cast<float>(photons.focus.map_size)), to_clip(2.0f / static_cast<float>(photons.focus.map_size));
         const F sum = mask_sum(middle_x, F(one_size), side) * mask_sum(middle_y, F(one_size), side);
-        return {vec4<F>(middle_x * to_clip - F(1.0f), F(1.0f) - middle_y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), all.flux * (F(1.0f) / sum)};
+        return {vec4<F>(middle_x * to_clip - F(1.0f), F(1.0f) - middle_y * to_clip, F(0.5f), F(1.0f)), LaneInt<F>(0), LaneInt<F>(0), F(one_size), all.flux * (F(1.0f) / sum), vec2<F>(F(1.0f))};
     }
 
 private:
@@ -115,7 +117,7 @@ private:
 struct DepositSplat {
     template <class F>
     [[gnu::always_inline]] vec4<F> operator()(const PhotonSplat<F>& splat, const PixelInput<F>& pixel) const {
-        return vec4<F>(splat.flux * (splat_mask(pixel.point_coord.x * F(2.0f) - F(1.0f)) * splat_mask(pixel.point_coord.y * F(2.0f) - F(1.0f))), F(0.0f));
+        return vec4<F>(splat.flux * (splat_mask((pixel.point_coord.x * F(2.0f) - F(1.0f)) * splat.to_mask.x) * splat_mask((pixel.point_coord.y * F(2.0f) - F(1.0f)) * splat.to_mask.y)), F(0.0f));
     }
 };
 

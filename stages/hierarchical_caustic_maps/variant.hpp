@@ -26,9 +26,15 @@ inline constexpr NamedVariant named_variants[] = {{"gather", Variant::Gather},  
 
 // How wide a splat is that follows its photon's neighbours (section 3.3).
 enum class SplatForm : int {
+    Extents,          // along each axis of the map, as far as the farther of the neighbours along a row and a column
     MaximumDistance,  // the farther of the neighbours along a row and a column
     Area,             // the root of the parallelogram's area that they span (Equation 2)
 };
+struct NamedSplatForm {
+    const char* name;
+    SplatForm form;
+};
+inline constexpr NamedSplatForm named_splat_forms[] = {{"extents", SplatForm::Extents}, {"max-distance", SplatForm::MaximumDistance}, {"area", SplatForm::Area}};
 
 inline constexpr bool merges(Variant v) { return v == Variant::CombineLast || v == Variant::CombineAll; }
 // Splats may be too wide for the map's levels.

@@ -33,14 +33,16 @@ struct PlacePhoton {
     float sprite_size;   // texels; 0: as the spacing of the photons asks for
 
     // Sprites of a width of their own are so much wider than their photons are apart: the sum of neighbours is then flat to
-    // within 2 %, whatever the photons' grid, and no gaps show between them.
+    // within 2 %, whatever the photons' grid, and no gaps show between them. The widest is for those whose neighbours all went
+    // elsewhere, too: narrow, they would be specks.
     static constexpr float overlap = 2.1f, narrowest = 3, widest = 32;
 
     template <class F>
     F width_of(const PhotonPlacement::Place<F>& at, LaneInt<F> x, LaneInt<F> y) const {
         if (sprite_size > 0) return F(sprite_size);
-        const F along_row = placement.neighbour(at, x, y, 1, 0).squared_distance, along_column = placement.neighbour(at, x, y, 0, 1).squared_distance;
-        return min(max(sqrt(max(along_row, along_column)) * F(overlap), F(narrowest)), F(widest));
+        const PhotonPlacement::Neighbour<F> row = placement.neighbour(at, x, y, 1, 0), column = placement.neighbour(at, x, y, 0, 1);
+        const F width = min(max(sqrt(max(row.squared_distance, column.squared_distance)) * F(overlap), F(narrowest)), F(widest));
+        return select(row.there | column.there, width, F(widest));
     }
     // The mask's sum over the texels that a sprite covers along one axis.
     template <class F>

@@ -4,6 +4,7 @@
 #pragma once
 #include <numbers>
 
+#include "stages/caustic_map/caustic_map.hpp"
 #include "stages/light_source.hpp"
 #include "stages/shading/shadow_map.hpp"
 #include "stages/surfaces.hpp"
@@ -59,71 +60,6 @@ struct ShadeDirect {
     }
 };
 
-// A caustics map, resolved: irradiance and surface ids, in a view of its own and, for what falls outside that, a wide one.
-struct CausticMap {
-    View focus;
-    Texture2DArrayView<Format::RGBA32F> focus_irradiance;
-    Texture2DArrayView<Format::D32F> focus_depth;
-    int size = 0;
-    bool has_focus = true, has_wide = false, wide_cube = false;
-    CubeViews faces;  // or
-    View parallel;
-    Texture2DArrayView<Format::RGBA32F> wide_irradiance;
-    Texture2DArrayView<Format::D32F> wide_depth;
-    int wide_size = 0;
-    // What lies where the light does not see, round the object.
-    bool has_hidden = false;
-    CubeViews hidden_faces;
-    Texture2DArrayView<Format::RGBA32F> hidden_irradiance;
-    Texture2DArrayView<Format::D32F> hidden_depth;
-
-    // Irradiance at a point of a surface: the four texels round it that show the same surface.
-    template <class F>
-    vec3<F> irradiance(const vec3<F>& position, F id) const {
-        vec3<F> sum(F(0.0f));
-        if (has_focus) {
-            const View::Place<F> p = focus.place(position);
-            sum = read(focus_irradiance, focus_depth, size, LaneInt<F>(0), p.u, p.v, p.nearness, id, (p.z > F(0.0f)) | LaneMask<F>(!focus.perspective));
-        }
-        if (has_wide) {
-            if (wide_cube) {
-                const CubeViews::Place<F> w = faces.place(position);
-                sum = sum + read(wide_irradiance, wide_depth, wide_size, w.layer, w.u, w.v, w.nearness, id, LaneMask<F>(true));
-            } else {
-                const View::Place<F> w = parallel.place(position);
-                sum = sum + read(wide_irradiance, wide_depth, wide_size, LaneInt<F>(0), w.u, w.v, w.nearness, id, LaneMask<F>(true));
-            }
-        }
-        if (has_hidden) {
-            const CubeViews::Place<F> h = hidden_faces.place(position);
-            sum = sum + read(hidden_irradiance, hidden_depth, wide_size, h.layer, h.u, h.v, h.nearness, id, LaneMask<F>(true));
-        }
-        return sum;
-    }
-
-private:
-    template <class F>
-    static vec3<F> read(const Texture2DArrayView<Format::RGBA32F>& map, const Texture2DArrayView<Format::D32F>& depth, int size, LaneInt<F> layer, F u, F v, F nearness, F id, LaneMask<F> valid) {
-        const LaneMask<F> inside = valid & (u > F(0.0f)) & (u < F(1.0f)) & (v > F(0.0f)) & (v < F(1.0f));
-        if (none(inside)) return vec3<F>(F(0.0f));
-        const F side(static_cast<float>(size)), x = u * side - F(0.5f), y = v * side - F(0.5f), fx = floor(x), fy = floor(y);
-        const LaneInt<F> x0 = to_int(fx), y0 = to_int(fy), last(size - 1);
-        const F wx = x - fx, wy = y - fy;
-        vec3<F> sum(F(0.0f));
-        F weights(0.0f);
-        for (int k = 0; k < 4; ++k) {
-            const LaneInt<F> tx = min(max(x0 + LaneInt<F>(k & 1), LaneInt<F>(0)), last), ty = min(max(y0 + LaneInt<F>(k >> 1), LaneInt<F>(0)), last);
-            const vec4<F> texel = map.fetch<F>(tx, ty, layer);
-            const F there = depth.fetch<F>(tx, ty, layer).x, weight = (k & 1 ? wx : F(1.0f) - wx) * (k >> 1 ? wy : F(1.0f) - wy);
-            // The same surface, and not a part of it far before or behind this one.
-            const LaneMask<F> same = inside & (texel.w == id) & (abs(there - nearness) <= max(there, nearness) * F(0.02f));
-            sum = sum + vec3<F>(texel) * select(same, weight, F(0.0f));
-            weights = weights + select(same, weight, F(0.0f));
-        }
-        return sum * select(weights > F(0.0f), F(1.0f) / max(weights, F(1e-6f)), F(0.0f));
-    }
-};
-
 struct ShadeCaustic {
     SurfacePoints points;
     CausticMap map;
@@ -134,7 +70,7 @@ struct ShadeCaustic {
         const LaneMask<F> there = p.w > F(0.0f);
         if (none(there)) return vec4<F>(F(0.0f));
         const vec3<F> albedo(points.albedo.fetch<F>(x, y));
-        return select(there, lambert(albedo, map.irradiance(vec3<F>(p), p.w)), vec4<F>(F(0.0f)));
+        return select(there, lambert(albedo, map.irradiance(points.positions, x, y, p)), vec4<F>(F(0.0f)));
     }
 };
 

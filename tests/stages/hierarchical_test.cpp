@@ -104,7 +104,7 @@ struct Gathered {
     }
 };
 
-Gathered gather(Device& device, const PhotonBuffer& photons, Variant variant, int map_size, bool wide = false, stages::hierarchical::SplatForm form = stages::hierarchical::SplatForm::MaximumDistance) {
+Gathered gather(Device& device, const PhotonBuffer& photons, Variant variant, int map_size, bool wide = false, stages::hierarchical::SplatForm form = stages::hierarchical::SplatForm::Extents) {
     namespace hierarchical = stages::hierarchical;
     stages::PassDraws draws(device);
     hierarchical::PhotonGather gather(variant, photons.side());
@@ -151,6 +151,43 @@ TEST_CASE("the sum of a splat's mask has the value of its closed form") {
             CHECK(close(mask_sum(centre, width, static_cast<float>(side)), sum, 2e-5));
         }
     }
+}
+
+TEST_CASE("a splat is as long along each axis as its neighbours are apart, and wide where it has none") {
+    using namespace stages::hierarchical;
+    constexpr int side = 8, map_size = 128;
+    const Texture positions({.format = Format::RGBA32F, .width = side, .height = side});
+    const auto put = [&](int x, int y, float across, float down) {
+        float* p = reinterpret_cast<float*>(positions.row(y)) + 4 * x;
+        p[0] = across / map_size - 0.5f, p[1] = 0, p[2] = down / map_size - 0.5f, p[3] = 1;
+    };
+    stages::PhotonPlacement placement;
+    placement.positions = positions;
+    placement.focus = stages::make_view(glm::vec3(0, 1, 0), glm::vec3(0, -1, 0));
+    placement.focus.perspective = false;
+    placement.focus.half = glm::vec2(0.5f);
+    placement.focus.near_plane = 0;
+    placement.focus.far_plane = 2;
+    placement.map_size = map_size;
+    put(0, 0, 20, 40), put(1, 0, 24, 41.5f), put(0, 1, 20.25f, 43);  // two neighbours
+    put(4, 0, 60, 60), put(5, 0, 61.5f, 70);                         // one
+    put(4, 4, 90, 90);                                                // none
+    SplatSize size;
+    size.levels = stages::hierarchical::map_levels;
+    const auto widths = [&](SplatForm form, int x, int y) {
+        size.form = form;
+        const float* p = reinterpret_cast<const float*>(positions.row(y)) + 4 * x;
+        const glm::vec3 position(p[0], p[1], p[2]);
+        const glm::vec2 w = size.widths(placement, placement.place(position), position, x, y);
+        return std::pair{std::min(w.x, w.y), std::max(w.x, w.y)};
+    };
+    const auto are = [](std::pair<float, float> w, double narrow, double wide) { return close(w.first, narrow * static_cast<double>(overlap), 1e-4) && close(w.second, wide * static_cast<double>(overlap), 1e-4); };
+    CHECK(are(widths(SplatForm::Extents, 0, 0), 3, 4));
+    CHECK(are(widths(SplatForm::MaximumDistance, 0, 0), std::sqrt(18.25), std::sqrt(18.25)));
+    CHECK(are(widths(SplatForm::Area, 0, 0), std::sqrt(11.625), std::sqrt(11.625)));
+    CHECK(are(widths(SplatForm::Extents, 4, 0), 1.5, 10));
+    CHECK(are(widths(SplatForm::Area, 4, 0), std::sqrt(102.25), std::sqrt(102.25)));
+    for (const SplatForm form : {SplatForm::Extents, SplatForm::MaximumDistance, SplatForm::Area}) CHECK(widths(form, 4, 4).first == size.widest());
 }
 
 TEST_CASE("the traversal finds the photons that there are, each once, and visits few nodes in vain") {
@@ -209,7 +246,11 @@ TEST_CASE("every variant splats the flux that there is, no more and no less") {
                 const double sum = gather(device, photons, variant, 128, wide).sum();
                 CHECK(sum == doctest::Approx(expected).epsilon(1e-4).scale(0));
             }
-            CHECK(close(gather(device, photons, Variant::Varying, 128, wide, stages::hierarchical::SplatForm::Area).sum(), expected, 1e-4));
+            for (const auto& [name, form] : stages::hierarchical::named_splat_forms) {
+                const std::string its_name(name);
+                CAPTURE(its_name);
+                CHECK(close(gather(device, photons, Variant::Varying, 128, wide, form).sum(), expected, 1e-4));
+            }
         }
     }
 }

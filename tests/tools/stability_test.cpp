@@ -218,6 +218,10 @@ TEST_CASE("ranges: each is of a sweep, can be left on both sides, and says why; 
     // A scene that somebody gives is not judged by figures of ours.
     CHECK(range_of("light-path", "all", "temporal", true));
     CHECK(!range_of("light-path", "all", "temporal", false));
+    // What is so of one way of tracing only does not judge the other.
+    CHECK(range_of("photons", "16^2", "mean drift", true, true)->exact_only);
+    CHECK(!range_of("photons", "16^2", "mean drift", true, false)->exact_only);
+    CHECK(!range_of("photons", "64^2", "mean drift", true, true)->exact_only);
 }
 
 TEST_CASE("scenes of sweeps are what they are said to be") {

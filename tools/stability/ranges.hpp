@@ -11,13 +11,14 @@ struct Range {
     double least, most;
     bool any_scene;  // false: holds for the sweep's own scenes only
     const char* why;
+    bool exact_only = false;  // holds for photons that are traced exactly only
 };
 
 // The first that applies counts.
 std::span<const Range> ranges();
 
 // Null where none is given: the figure is told and not judged.
-const Range* range_of(const std::string& sweep, const std::string& step, const std::string& quantity, bool own_scene);
+const Range* range_of(const std::string& sweep, const std::string& step, const std::string& quantity, bool own_scene, bool exact = false);
 
 bool within(const Range& range, double value);  // not so for NaN
 

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const Range* range_for(const SweepResult& result, const StepResult& step, const Figure& figure) {
-    return range_of(result.sweep, step.step, figure.quantity, result.scene.empty());
+    return range_of(result.sweep, step.step, figure.quantity, result.scene.empty(), result.exact);
 }
 bool outside(const SweepResult& result, const StepResult& step, const Figure& figure) {
     const Range* range = range_for(result, step, figure);

@@ -27,6 +27,7 @@ public:
     Sweep(Device& device, const std::string& name, const scenes::Scene* scene, const SweepOptions& options)
         : device_(device), options_(options), base_(scene ? *scene : scenes::bundled_scene("glass-sphere")), own_scenes_(!scene) {
         result_.sweep = name;
+        result_.exact = options_.settings.tracing == stages::Tracing::Exact;
         if (scene) result_.scene = scene->name;
     }
 

@@ -25,6 +25,7 @@ struct StepResult {
 };
 struct SweepResult {
     std::string sweep, scene;  // `scene` empty: of the sweep's own
+    bool exact = false;        // photons were traced exactly
     std::vector<StepResult> steps;
     std::string worst;  // the step with the largest error
     PictureData worst_picture, worst_truth;  // R, G, B

@@ -63,7 +63,7 @@ void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
     const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const scenes::Material& m) { return m.kind() != scenes::SurfaceKind::Lambert; });
     // Measured: what a sample's terms, positions and, behind something specular, its depth layers take; what a texel of a map
     // takes, its levels, receivers and the wide map's share included.
-    const double bytes_per_sample = specular ? 200 : 100, bytes_per_texel = 190;
+    const double bytes_per_sample = specular ? 200 : 100, bytes_per_texel = 196;
     const int width = s.width * s.samples_side, height = s.height * s.samples_side;
     const double samples = static_cast<double>(width) * height * bytes_per_sample;
     const double photons = specular ? static_cast<double>(s.photons) * s.photons * bytes_per_photon(s) : 0, texels = specular ? static_cast<double>(s.map_size) * s.map_size * bytes_per_texel : 0;

@@ -446,7 +446,7 @@ void Renderer::Impl::trace_photons(const Pass& pass, int first_row, const std::a
     photons.tracer.search.solid = caster;
     photons.lit_side = lit_side;
     photons.tracer.material = specular_material(pass.mesh);
-    photons.tracer.bounces = settings.bounces;
+    photons.tracer.bounces = bounces_of(settings);
     ReceiverSearch& search = photons.tracer.receivers;
     search.map = light_receivers(light);
     search.method = settings.intersection;
@@ -478,7 +478,7 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const CasterView& f
     const CausticMapPlan& how = plan.maps[pass.map];
     TraceExactPhotons photons;
     photons.tracer.world = traced->view();
-    photons.tracer.bounces = settings.bounces;
+    photons.tracer.bounces = bounces_of(settings);
     photons.tracer.branch = pass.branch;
     if (settings.inner_reflections) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
     photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !how.inside_branch;
@@ -656,7 +656,7 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
     TraceSeen trace;
     trace.tracer.search.solid = solid(eye(), pass.mesh, seen_layers);
     trace.tracer.material = specular_material(pass.mesh);
-    trace.tracer.bounces = settings.bounces;
+    trace.tracer.bounces = bounces_of(settings);
     trace.tracer.light = false;
     ReceiverSearch& search = trace.tracer.receivers;
     search.map.cube = true;
@@ -677,7 +677,7 @@ void Renderer::Impl::trace_seen(const Pass& pass) {
 void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     TraceSeenExactly trace;
     trace.tracer.world = traced->view();
-    trace.tracer.bounces = settings.bounces;
+    trace.tracer.bounces = bounces_of(settings);
     trace.tracer.branch = pass.branch;
     trace.tracer.light = false;
     if (settings.inner_reflections) trace.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;

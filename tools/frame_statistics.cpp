@@ -54,7 +54,7 @@ std::string statistics_json(const RenderOptions& o, const Device& device, const 
                  {"scene", o.scene.empty() ? "glass-sphere" : o.scene},
                  {"settings",
                   {{"technique", o.technique}, {"variant", o.variant}, {"tracing", o.tracing}, {"intersection", o.intersection}, {"iterations", o.settings.iterations},
-                   {"photons", std::to_string(o.settings.photons) + "^2"}, {"map_size", o.settings.map_size}, {"splat_size", o.settings.sprite_size}, {"bounces", o.settings.bounces}, {"inner_reflections", o.settings.inner_reflections},
+                   {"photons", std::to_string(o.settings.photons) + "^2"}, {"map_size", o.settings.map_size}, {"splat_size", o.settings.sprite_size}, {"bounces", stages::bounces_of(o.settings)}, {"inner_reflections", o.settings.inner_reflections},
                    {"depth_layers", o.settings.solid_layers}, {"size", {o.settings.width, o.settings.height}}, {"samples", o.settings.samples_side * o.settings.samples_side}}},
                  {"device", {{"isa", name_of(device.isa())}, {"lanes", lane_count(device.isa())}, {"threads", device.threads()}}},
                  {"load_ms", times.load_ms},

@@ -28,6 +28,7 @@ std::vector<std::string> names_of(const auto& variants) {
     for (const auto& v : variants) names.push_back(v.name);
     return names;
 }
+bool contains(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
 std::vector<std::string> all_variants() {
     std::vector<std::string> names = names_of(mapping_variants);
     for (const std::string& name : names_of(stages::hierarchical::named_variants)) names.push_back(name);
@@ -81,11 +82,11 @@ void check_memory(const scenes::Scene& scene, const stages::Settings& s) {
 
 void RenderOptions::add_to(CLI::App& c) {
     SceneOptions::add_to(c);
-    c.add_option("--technique", technique, "How caustics are made: auto, mapping or hierarchical")->check(CLI::IsMember({"auto", "mapping", "hierarchical"}))->capture_default_str();
+    c.add_option("--technique", technique, "How caustics are made: auto, mapping or hierarchical (default, unless --variant is one of mapping's)")->check(CLI::IsMember({"auto", "mapping", "hierarchical"}));
     c.add_option("--variant", variant,
                  "mapping: two-sided refraction (default); the tutorial's single one; photons from the object's vertices. hierarchical: " + joined(names_of(stages::hierarchical::named_variants)) + " (default)")
         ->check(CLI::IsMember(all_variants()));
-    c.add_option("--tracing", tracing, "How light is followed: through pictures from the light, one object; through the triangles, any objects one after the other")->check(CLI::IsMember({"image-space", "exact"}))->capture_default_str();
+    c.add_option("--tracing", tracing, "How light is followed: through the triangles, any objects one after the other (default); through pictures from the light, one object (default with options that only image space has)")->check(CLI::IsMember({"image-space", "exact"}));
     c.add_option("--intersection", intersection, "Image space: how a ray is met with what a light sees")->check(CLI::IsMember({"bisection", "newton", "secant"}))->capture_default_str();
     c.add_option("--iterations", settings.iterations, "Of the intersection")->check(CLI::Range(1, 64))->capture_default_str();
     c.add_option("--photons", photons, "Per light and specular object: N^2 or a number, rounded up to the square of a power of two")->capture_default_str();
@@ -95,7 +96,7 @@ void RenderOptions::add_to(CLI::App& c) {
         ->check(CLI::IsMember({"extents", "max-distance", "area"}))->capture_default_str();
     c.add_flag("--discard-wide-splats", settings.discard_wide_splats, "varying, varying-single: leave out what is too wide for the map's coarsest level");
     c.add_option("--splat-size", settings.sprite_size, "Texels across a photon's splat; 0: as large as the photons' spacing, or the variant, asks for")->check(number_in(0, 64))->capture_default_str();
-    c.add_option("--bounces", settings.bounces, "Specular surfaces that light meets, at most")->check(CLI::Range(1, 64))->capture_default_str();
+    c.add_option("--bounces", settings.bounces, "Specular surfaces that light meets, at most; 0: 32, in image space 16")->check(CLI::Range(0, 64))->capture_default_str();
     c.add_flag("--inner-reflections,!--no-inner-reflections", settings.inner_reflections, "Follow what surfaces reflect in part inside objects (default), or leave it out");
     c.add_option("--depth-layers", settings.solid_layers, "Image space: times that a ray may enter an object")->check(CLI::Range(1, stages::max_solid_layers))->capture_default_str();
     c.add_option("--samples", samples, "Per pixel, rounded up to a square; a pixel is their mean")->check(CLI::Range(1, 256))->capture_default_str();
@@ -104,7 +105,8 @@ void RenderOptions::add_to(CLI::App& c) {
 }
 
 void RenderOptions::finish_variant() {
-    const bool hierarchical = technique == "hierarchical";
+    if (technique.empty()) technique = contains(names_of(mapping_variants), variant) ? "mapping" : "hierarchical";
+    const bool hierarchical = technique != "mapping";
     settings.technique = hierarchical ? stages::Technique::Hierarchical : stages::Technique::Mapping;
     if (variant.empty()) variant = hierarchical ? "varying" : "two-sided";
     const auto check = [&](const auto& variants) {
@@ -129,12 +131,23 @@ void RenderOptions::finish_variant() {
     if (settings.discard_wide_splats && !stages::hierarchical::may_discard(v)) throw std::runtime_error("--discard-wide-splats: --variant " + variant + " has no splats that are too wide");
 }
 
+// Exact, unless something is asked for that only image space has.
+void RenderOptions::finish_tracing() {
+    const stages::Settings usual;
+    std::string only;
+    if (stages::needs_image_space(settings)) only = "--variant " + variant;
+    else if (intersection != RenderOptions().intersection) only = "--intersection";
+    else if (settings.iterations != usual.iterations) only = "--iterations";
+    else if (settings.solid_layers != usual.solid_layers) only = "--depth-layers";
+    if (tracing.empty()) tracing = only.empty() ? "exact" : "image-space";
+    if (tracing == "exact" && !only.empty()) throw std::runtime_error("--tracing exact: does not go with " + only);
+    settings.tracing = tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
+}
+
 void RenderOptions::finish(const scenes::Scene& loaded) {
     settings.photons = parse_photons(photons);
     finish_variant();
-    settings.tracing = tracing == "exact" ? stages::Tracing::Exact : stages::Tracing::ImageSpace;
-    if (settings.tracing == stages::Tracing::Exact && stages::needs_image_space(settings))
-        throw std::runtime_error("--tracing exact: does not go with --variant " + variant);
+    finish_tracing();
     settings.intersection = intersection == "newton" ? stages::Intersection::Newton : intersection == "secant" ? stages::Intersection::Secant : stages::Intersection::Bisection;
     while (settings.samples_side * settings.samples_side < samples) ++settings.samples_side;
     picture_size(loaded, settings.width, settings.height);

@@ -9,7 +9,8 @@
 namespace nephroid {
 
 struct RenderOptions : SceneOptions {
-    std::string technique = "mapping", variant, splat_form = "extents", tracing = "image-space", intersection = "bisection";
+    std::string technique, variant, tracing;  // empty: what goes with the rest, as finish() has it
+    std::string splat_form = "extents", intersection = "bisection";
     std::string photons = "1024^2";
     int samples = 1, threads = 0, lanes = 0;
     stages::Settings settings;
@@ -21,6 +22,7 @@ struct RenderOptions : SceneOptions {
 
 private:
     void finish_variant();
+    void finish_tracing();
 };
 
 }  // namespace nephroid

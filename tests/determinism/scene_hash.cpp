@@ -50,6 +50,7 @@ std::string hash_of_scene(Device& device, std::string_view name, const Around& a
 
 std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing tracing, const Around& around) {
     stages::Settings settings;
+    settings.technique = stages::Technique::Mapping;
     settings.photons = settings.map_size = 64;
     settings.tracing = tracing;
     return hash_of(device, name, settings, around);
@@ -57,7 +58,7 @@ std::string hash_of_scene(Device& device, std::string_view name, stages::Tracing
 
 std::string hash_of_scene(Device& device, std::string_view name, stages::hierarchical::Variant variant, const Around& around) {
     stages::Settings settings;
-    settings.technique = stages::Technique::Hierarchical;
+    settings.tracing = stages::Tracing::ImageSpace;
     settings.hierarchical_variant = variant;
     settings.photons = 128;
     settings.map_size = stages::hierarchical::merges(variant) ? 64 : 256;

@@ -46,6 +46,8 @@ stages::Settings small(int width, int height, int photons, int map_size, int sam
     stages::Settings s;
     s.width = width;
     s.height = height;
+    s.technique = stages::Technique::Mapping;
+    s.tracing = stages::Tracing::ImageSpace;
     s.samples_side = samples_side;
     s.photons = photons;
     s.map_size = map_size;

@@ -229,7 +229,7 @@ TEST_CASE("auto: what it picks is what render draws with these options, whatever
     const Outcome serial = run_nephroid(folder, {"render", "mirror-ring", "--technique", "auto", "--error", "0.1", "--size", "96x72", "--hash", "--lanes", "1", "--threads", "1", "-o", "a.exr"});
     CHECK(picked(serial) == picked(o));
     CHECK(serial.out == o.out);
-    // Without a request it is mapping with its defaults, as it always was.
+    // Without a request it is what is drawn by default.
     CHECK(hash_of(folder, {"mirror-ring", "--technique", "auto", "--photons", "32^2"}) == hash_of(folder, {"mirror-ring", "--photons", "32^2"}));
 }
 
@@ -255,7 +255,7 @@ TEST_CASE("auto: what cannot be had is refused with one line, and nothing is wri
     };
     const std::string starts[] = {
         "nephroid: --error 0.1: nothing is expected to meet it: the scene has a medium or dispersion, which is not drawn\n",
-        "nephroid: --error 0.0001: nothing is expected to meet it: the best that can be had is --tracing exact ",
+        "nephroid: --error 0.0001: nothing is expected to meet it: the best that can be had is --technique mapping --tracing exact ",
         "nephroid: --budget 0.01: the cheapest setting is expected to take ",
         "nephroid: --error: needs --technique auto\n",
         "nephroid: --error: --technique auto picks --photons, which is given as well\n",

@@ -28,7 +28,7 @@ struct Truths {
         PictureData truth = read_picture(folder.file("truths/glass-sphere.exr"));
         truth.metadata = {{"nephroid:noise", "0.0004"}, {"nephroid:caustic-noise", "0.001"}};
         write_picture(folder.file("truths/glass-sphere.exr"), truth);
-        std::ofstream(folder / "few.txt") << "# two settings\n--photons 32^2 --map-size 64\n\n --variant tutorial --photons 64^2 --map-size 32 \n";
+        std::ofstream(folder / "few.txt") << "# two settings\n--technique mapping --tracing image-space --photons 32^2 --map-size 64\n\n --variant tutorial --photons 64^2 --map-size 32 \n";
     }
     Outcome chart(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), "chart");

@@ -147,7 +147,7 @@ TEST_CASE("the cost is the same for every number of lanes and threads, and follo
         const RenderOptions o = options_of({"", options}, "96x72");
         return cost_of(amounts_of(renderer.render(o.settings).passes, o.settings));
     };
-    const std::string few = "--photons 32^2 --map-size 64", many = "--photons 128^2 --map-size 64";
+    const std::string few = "--technique mapping --tracing image-space --photons 32^2 --map-size 64", many = "--technique mapping --tracing image-space --photons 128^2 --map-size 64";
     const double scalar = cost(few, 1, 1);
     CHECK(scalar > 0);
     for (const int lanes : {1, 4, 8, 16})
@@ -165,7 +165,8 @@ TEST_CASE("the cost is the same for every number of lanes and threads, and follo
 TEST_CASE("weights are found again in times that they made") {
     // Passes of one kind each with counts of their own; times that are 3 ns a fragment and 20 ns a blended fragment.
     CostFit fit;
-    const stages::Settings settings;
+    stages::Settings settings;
+    settings.tracing = stages::Tracing::ImageSpace;
     for (int k = 1; k <= 5; ++k) {
         stages::PassRecord record;
         record.statistics.ps_invocations = static_cast<std::uint64_t>(1000000 * k * k);

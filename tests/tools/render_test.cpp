@@ -11,6 +11,7 @@
 #include "scenes/bundled.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/picture_file.hpp"
+#include "tools/chart/sweep.hpp"
 #include "tools/render_options.hpp"
 
 using namespace nephroid;
@@ -355,26 +356,61 @@ TEST_CASE("numbers that are none, or too many") {
         {{"--threads", "-1"}, "--threads: "},
         {{"--lanes", "3"}, "--lanes: 3 not in {0,1,4,8,16}"},
         {{"--technique", "magic"}, "--technique: magic not in {"},
-        {{"--variant", "varying"}, "--variant: varying is none of --technique mapping, which has two-sided, tutorial, vertices"},
-        {{"--technique", "auto", "--variant", "gather"}, "--variant: gather is none of --technique auto, which has two-sided, tutorial, vertices"},
+        {{"--technique", "mapping", "--variant", "varying"}, "--variant: varying is none of --technique mapping, which has two-sided, tutorial, vertices"},
+        {{"--technique", "auto", "--variant", "tutorial"}, "--variant: tutorial is none of --technique auto, which has gather, constant, "},
         {{"--technique", "hierarchical", "--variant", "tutorial"}, "--variant: tutorial is none of --technique hierarchical, which has gather, constant, thin-lens, interpolated, hierarchical, combine-last, combine-all, varying-single, varying"},
         {{"--technique", "hierarchical", "--variant", "magic"}, "--variant: magic not in {"},
         {{"--technique", "hierarchical", "--map-size", "1000"}, "--map-size: --variant varying needs a multiple of 16, got 1000"},
         {{"--technique", "hierarchical", "--splat-size", "3"}, "--splat-size: --variant varying has splats of many sizes"},
         {{"--technique", "hierarchical", "--variant", "gather", "--discard-wide-splats"}, "--discard-wide-splats: --variant gather has no splats that are too wide"},
-        {{"--discard-wide-splats"}, "--discard-wide-splats: --technique mapping has no splats that are too wide"},
+        {{"--technique", "mapping", "--discard-wide-splats"}, "--discard-wide-splats: --technique mapping has no splats that are too wide"},
         {{"--technique", "hierarchical", "--splat-threshold", "0"}, "--splat-threshold: '0' is not a number from 2 to 64"},
         {{"--technique", "hierarchical", "--variant", "gather", "--splat-size", "1.5"}, "--splat-size: --technique hierarchical needs at least 2 texels"},
         {{"--technique", "hierarchical", "--variant", "thin-lens", "--tracing", "exact"}, "--tracing exact: does not go with --variant thin-lens"},
         {{"--variant", "vertices", "--tracing", "exact"}, "--tracing exact: does not go with --variant vertices"},
+        {{"--tracing", "exact", "--intersection", "newton"}, "--tracing exact: does not go with --intersection"},
+        {{"--tracing", "exact", "--iterations", "3"}, "--tracing exact: does not go with --iterations"},
+        {{"--tracing", "exact", "--depth-layers", "1"}, "--tracing exact: does not go with --depth-layers"},
         {{"--splat-size", "nan"}, "--splat-size: 'nan' is not a number from 0 to 64"},
     };
     for (const Case& c : cases) {
         CAPTURE(c.words);
         CHECK(option_refusal(c.arguments).starts_with(c.words));
     }
-    CHECK(option_refusal({"--size", "64x48", "--photons", "65536", "--samples", "3", "--lanes", "16", "--splat-size", "64"}) == "none");
+    CHECK(option_refusal({"--size", "64x48", "--photons", "65536", "--samples", "3", "--lanes", "16", "--splat-threshold", "64"}) == "none");
     CHECK(option_refusal({"--technique", "hierarchical", "--variant", "combine-all", "--map-size", "1000", "--splat-size", "5"}) == "none");
+}
+
+TEST_CASE("what is not said follows from what is") {
+    struct Case {
+        std::string options, technique, tracing;
+    };
+    const Case cases[] = {{"", "hierarchical", "exact"},
+                          {"--technique mapping", "mapping", "exact"},
+                          {"--tracing image-space", "hierarchical", "image-space"},
+                          {"--variant gather", "hierarchical", "exact"},
+                          {"--variant thin-lens", "hierarchical", "image-space"},
+                          {"--variant two-sided", "mapping", "exact"},
+                          {"--variant tutorial", "mapping", "image-space"},
+                          {"--intersection secant", "hierarchical", "image-space"},
+                          {"--iterations 3", "hierarchical", "image-space"},
+                          {"--technique mapping --depth-layers 1", "mapping", "image-space"}};
+    for (const Case& c : cases) {
+        CAPTURE(c.options);
+        const RenderOptions o = chart::options_of({"", c.options}, "64x48");
+        CHECK(o.technique == c.technique);
+        CHECK(o.tracing == c.tracing);
+        CHECK((o.settings.technique == stages::Technique::Hierarchical) == (c.technique == "hierarchical"));
+        CHECK((o.settings.tracing == stages::Tracing::Exact) == (c.tracing == "exact"));
+    }
+    const stages::Settings program = chart::options_of({"", ""}, "64x48").settings, library;
+    CHECK(program.technique == library.technique);
+    CHECK(program.tracing == library.tracing);
+    CHECK(program.variant == library.variant);
+    CHECK(program.hierarchical_variant == library.hierarchical_variant);
+    CHECK(program.splat_form == library.splat_form);
+    CHECK(program.photons == library.photons);
+    CHECK(program.map_size == library.map_size);
 }
 
 // Not by the program: if it did not refuse, it would take the whole machine.

@@ -306,6 +306,8 @@ TEST_CASE("triangles without area neither open a mesh nor close one") {
 TEST_CASE("mirrored light lands on receivers, not on the air between one's edge and the next") {
     Device device;
     SweepOptions options;
+    options.settings.technique = stages::Technique::Mapping;
+    options.settings.tracing = stages::Tracing::ImageSpace;
     options.settings.width = 64;
     options.settings.height = 48;
     options.settings.photons = 256;
@@ -336,25 +338,30 @@ TEST_CASE("a sweep says of what it cannot judge that it cannot") {
 
 TEST_CASE("notes of failures: for the zones that sweeps measured, and for nothing else") {
     Device device;
-    const auto notes = [&](const scenes::Scene& scene, const stages::Settings& settings = {}) { return failure_notes(build_world(device, scene).world, settings); };
+    stages::Settings mapping;
+    mapping.technique = stages::Technique::Mapping;
+    mapping.tracing = stages::Tracing::ImageSpace;
+    const auto notes = [&](const scenes::Scene& scene, const stages::Settings& settings) { return failure_notes(build_world(device, scene).world, settings); };
     // No bundled scene stands in such a zone.
     for (const std::string_view name : scenes::bundled_scene_names()) {
         const std::string text(name);
         CAPTURE(text);
-        CHECK(notes(scenes::bundled_scene(name)).empty());
+        CHECK(notes(scenes::bundled_scene(name), mapping).empty());
+        CHECK(notes(scenes::bundled_scene(name), {}).empty());
     }
     // Where the sweep near-light has lost more than it can have by chance.
-    for (const float gap : {1.0f, 0.3f, 0.1f}) CHECK(notes(ball_near_light(gap)).empty());
+    for (const float gap : {1.0f, 0.3f, 0.1f}) CHECK(notes(ball_near_light(gap), mapping).empty());
     for (const float gap : {0.03f, 0.0f, -0.25f, -0.5f}) {
-        const std::vector<std::string> said = notes(ball_near_light(gap));
+        const std::vector<std::string> said = notes(ball_near_light(gap), mapping);
         REQUIRE(said.size() == 1);
         CHECK(said[0].find("light 'bulb' stands in or close to 'sphere'") == 0);
+        CHECK(notes(ball_near_light(gap), {}).empty());
     }
-    stages::Settings newton;
+    stages::Settings newton = mapping;
     newton.intersection = stages::Intersection::Newton;
     CHECK(notes(scenes::bundled_scene("mirror-ring"), newton).size() == 1);
     CHECK(notes(scenes::bundled_scene("glass-sphere"), newton).empty());
-    stages::Settings few;
+    stages::Settings few = mapping;
     few.photons = 64;
     const std::vector<std::string> said = notes(scenes::bundled_scene("glass-sphere"), few);
     REQUIRE(said.size() == 1);
@@ -374,7 +381,7 @@ TEST_CASE("that dispersion is not drawn is said") {
 
 TEST_CASE("render tells of a zone that it is in, and draws all the same") {
     const Folder folder;
-    const Outcome o = run_nephroid(folder, {"render", "glass-sphere", "--size", "16x12", "--photons", "16^2", "--map-size", "256", "-o", "a.png"});
+    const Outcome o = run_nephroid(folder, {"render", "glass-sphere", "--technique", "mapping", "--size", "16x12", "--photons", "16^2", "--map-size", "256", "-o", "a.png"});
     CHECK(o.code == 0);
     CHECK(o.err == "nephroid: 16^2 photons are too few for a caustic map of 256^2 texels: splats do not reach from one to the next, and the caustic falls into spots\n");
     CHECK(folder.files() == std::vector<std::string>{"a.png"});

@@ -70,7 +70,7 @@ const std::vector<std::string>& ladder() {
     static const std::vector<std::string> steps = [] {
         std::vector<std::string> all;
         for (const auto& [photons, map] : {std::pair{16, 32}, {32, 64}, {64, 128}, {128, 256}, {256, 512}, {512, 1024}, {1024, 1024}})
-            all.push_back(printf_text("--tracing exact --photons %d^2 --map-size %d --bounces 4 --no-inner-reflections", photons, map));
+            all.push_back(printf_text("--technique mapping --tracing exact --photons %d^2 --map-size %d --bounces 4 --no-inner-reflections", photons, map));
         return all;
     }();
     return steps;

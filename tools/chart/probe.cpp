@@ -25,7 +25,7 @@ stages::Settings probe_settings(int width, int height, int photons) {
     s.height = std::max(1, static_cast<int>(std::lround(height * scale)));
     s.photons = photons;
     s.map_size = 2 * photons;
-    s.tracing = stages::Tracing::Exact;
+    s.technique = stages::Technique::Mapping;
     s.bounces = 4;
     s.inner_reflections = false;
     return s;

@@ -56,15 +56,13 @@ struct TracedWorldView {
         constexpr TriangleHierarchyView::Start anywhere = TriangleHierarchyView::Start::Anywhere;
         const F error = hierarchy.error_at(from);
         const vec3<F> way = point + normal * (F(2.0f) * error) - from, direction = glm::normalize(way);
-        const F faces = -glm::dot(normal, direction);
-        const LaneMask<F> asks = active & (faces > F(0.0f));
+        const LaneMask<F> asks = active & (glm::dot(normal, direction) < F(0.0f));
         if (none(asks)) return asks;
         const TriangleHierarchyView::Hit<F> hit = among == Among::Receivers ? hierarchy.nearest_receiver(from, direction, asks, anywhere) : hierarchy.nearest(from, direction, asks, anywhere);
         const vec3<F> plane = normals.template load<F>(hit.triangle).triangle;
-        const F side = select(glm::dot(plane, direction) < F(0.0f), F(1.0f), F(-1.0f));
+        const F slant = glm::dot(plane, direction), side = select(slant < F(0.0f), F(1.0f), F(-1.0f));
         const LaneMask<F> same_way = glm::dot(plane, normal) * side > F(least);
-        const F slack = F(4.0f) * error / faces;
-        return asks & hit.found() & same_way & (abs(hit.distance - glm::length(way)) <= slack);
+        return asks & hit.found() & same_way & (abs(hit.distance - glm::length(way)) * abs(slant) <= F(4.0f) * error);
     }
 
     // Where a triangle was met: on its plane, down to rounding, whatever the distance was.

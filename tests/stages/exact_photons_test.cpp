@@ -288,6 +288,23 @@ TEST_CASE("a lamp in a wall's plane lights both sides, whatever rounding makes o
     }
 }
 
+TEST_CASE("light that grazes a triangle lights it by its vertices' normals, however much they lean") {
+    Device device;
+    for (const float height : {0.3f, 0.03f, 0.003f}) {
+        for (const float lean : {0.5f, 0.01f, -0.001f}) {
+            CAPTURE(height);
+            CAPTURE(lean);
+            scenes::Scene scene = floor_scene();
+            const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1, 0)), towards = glm::normalize(glm::vec3(1, height, 0.2f));
+            for (glm::vec3& n : scene.meshes[0].normals) n = normal;
+            add_sun(scene, -towards);
+            const Rendered r = render(device, scene, exact(16, 12));
+            for (int y = 0; y < 12; ++y)
+                for (int x = 0; x < 16; ++x) REQUIRE(r.at(r.direct, x, y).x == doctest::Approx(0.7 / 3.14159265358979 * glm::dot(normal, towards)).epsilon(1e-4).scale(0));
+        }
+    }
+}
+
 TEST_CASE("every watt of every bundled scene is accounted for") {
     Device device;
     for (const std::string_view scene : scenes::bundled_scene_names()) {

@@ -369,6 +369,7 @@ DrawResult Device::draw(const ProgramRef& program, const PipelineState& state, c
     draw.min_depth = v.min_depth;
     draw.max_depth = v.max_depth;
     draw.early_depth = state.depth.used() && !traits.discards && !traits.writes_depth;
+    draw.keeps_all = !state.depth.used() && !traits.discards;
     draw.needs_z_w = state.depth.used() || traits.takes_pixel_input || call.observer;
     draw.needs_smooth = traits.has_pixel && traits.stream[0].has_smooth;
     draw.needs_linear = traits.has_pixel && traits.stream[0].has_linear;

@@ -79,8 +79,8 @@ static_assert(sizeof(TriangleRecord) == 128);
 
 struct PointRecord {
     std::int32_t left, top, right, bottom;  // pixels covered, right and bottom excluded
-    float x, y, size;                       // pixels
-    float z, w;
+    float x, y, inverse_size;               // of the centre, and one over the size; pixels
+    float z, w;                             // depth, as clamped; of clip space
     std::uint32_t vertex;
     std::uint32_t primitive_id;
     std::int32_t target;
@@ -159,6 +159,7 @@ struct DrawContext {
     bool rasterize;
     bool early_depth;
     bool needs_smooth, needs_linear, needs_z_w;  // what fragments have to carry
+    bool keeps_all;  // no fragment is lost to depth or discarded
 
     const RecordLayout* raster_layout;
     RasterTarget* targets;
@@ -195,8 +196,8 @@ struct DrawContext {
 
 // Per worker: fragments waiting to be shaded, and what comes of them.
 struct alignas(64) TileScratch {
-    std::byte groups[groups_per_flush * sizeof(FragmentGroup<16>)];
-    float results[groups_per_flush * (max_render_targets * 4 + 1) * 16];
+    std::byte groups[groups_per_flush<4> * sizeof(FragmentGroup<4>)];  // the most that any number of lanes takes
+    float results[fragments_per_flush * (max_render_targets * 4 + 1)];
     PipelineStatistics statistics;
 };
 

@@ -70,7 +70,13 @@ struct GeometryWork {
 enum class GroupLayout : std::uint8_t {
     Loose,
     RowsOfFour,  // rows of four neighbours from (x[0], y[0]) on, row after row, x[0] a multiple of four, all within the target
-    Rectangle,   // row after row of the columns [left, right), from (x[0], y[0]) on
+    Splat,       // row after row of a SplatPlace, all of whose groups follow each other in one flush
+};
+
+// Where a point lies, or what of it lies in a tile; pixels.
+struct SplatPlace {
+    std::int32_t left, top, width, height;
+    std::int32_t first;  // the group's first fragment, counted row after row
 };
 
 // Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second
@@ -82,21 +88,22 @@ struct alignas(64) FragmentGroup {
     float l1[N], l2[N];
     float z[N], w[N];
     float point_x[N], point_y[N];  // point coordinate
-    std::uint32_t mask;            // lanes that are fragments
-    // One primitive for all lanes (`uniform`: index 0 of each), or one per lane.
-    bool uniform;
-    bool constant;      // all three corners are one vertex, whose values every fragment has: a point
-    GroupLayout layout;
-    std::int32_t left, right;  // of a Rectangle
-    std::uint32_t corner[3][N];  // records to interpolate between
-    std::uint32_t leading[N];    // record that flat values come from
+    std::uint32_t corner[3][N];    // records to interpolate between
+    std::uint32_t leading[N];      // record that flat values come from
     std::uint32_t primitive_id[N];
     std::uint32_t front_facing[N];  // 0 or 1
-    std::int32_t layer, level;      // of the target, the same for all
+    std::uint32_t mask;             // lanes that are fragments
+    // One primitive for all lanes (`uniform`: index 0 of each), or one per lane.
+    bool uniform;
+    bool constant;  // a point: every fragment has the leading vertex's values, `corner` is not filled
+    GroupLayout layout;
+    SplatPlace splat;  // of a Splat
 };
 
 // How many groups are shaded at a time: enough to hide the calls, few enough to stay in the first-level cache.
-inline constexpr int groups_per_flush = 16;
+inline constexpr int fragments_per_flush = 256;
+template <int N>
+inline constexpr int groups_per_flush = N == 1 ? 16 : fragments_per_flush / N;
 
 // One run of the pixel stage. Results of group g begin at results + g * result_stride; in them the colour of target t,
 // channel c is at [(t * 4 + c) * lanes], the depth, where written, after the last colour.
@@ -107,6 +114,7 @@ struct PixelWork {
     int count;
     float* results;
     int result_stride;  // in floats
+    std::int32_t layer, level;  // of the target
 };
 
 struct ProgramKernelTable {

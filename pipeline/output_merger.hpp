@@ -209,40 +209,25 @@ template <class F, Format format, MergeMode mode>
 template <class F, int channels, MergeMode mode>
 [[gnu::always_inline]] inline void merge_rows(std::byte* row, std::ptrdiff_t pitch, int x, int end, int rows, const float* colors) {
     constexpr int span = lanes_of<F> / channels, bytes = channels * static_cast<int>(sizeof(float));
-    const int first = x & -span, last = (end - 1) & -span, width = end - x;
+    const int first = x & -span, last = (end - 1) & -span, spans = (last - first) / span;
     const std::uint32_t at_end = (2u << (channels * (end - last) - 1)) - 1u, at_first = ~0u << channels * (x - first);
+    const std::ptrdiff_t stride = channels * (end - x);
     colors += channels * (first - x);
-    for (row += first * bytes; rows > 0; --rows, row += pitch, colors += channels * width) {
-        if (first == last) {
-            merge_span<F, mode>(row, colors, at_first & at_end);
-            continue;
+    row += first * bytes;
+    if (spans == 0) {
+        for (; rows > 0; --rows, row += pitch, colors += stride) merge_span<F, mode>(row, colors, at_first & at_end);
+    } else if (spans == 1) {
+        for (; rows > 0; --rows, row += pitch, colors += stride) {
+            merge_span<F, mode>(row, colors, at_first);
+            merge_span<F, mode>(row + span * bytes, colors + lanes_of<F>, at_end);
         }
-        merge_span<F, mode>(row, colors, at_first);
-        int on = span;
-        for (; on < last - first; on += span) merge_span<F, mode>(row + on * bytes, colors + channels * on, ~0u);
-        merge_span<F, mode>(row + on * bytes, colors + channels * on, at_end);
+    } else {
+        for (; rows > 0; --rows, row += pitch, colors += stride) {
+            merge_span<F, mode>(row, colors, at_first);
+            for (int on = 1; on < spans; ++on) merge_span<F, mode>(row + on * span * bytes, colors + on * lanes_of<F>, ~0u);
+            merge_span<F, mode>(row + spans * span * bytes, colors + spans * lanes_of<F>, at_end);
+        }
     }
-}
-
-// The first `count` fragments of a rectangle from (x, y) on.
-template <class F, int channels, MergeMode mode>
-[[gnu::always_inline]] inline void merge_rectangle(std::byte* first_row, std::ptrdiff_t pitch, int left, int right, int x, int y, const float* colors, int count) {
-    const int width = right - left;
-    const auto merge = [&](int from, int end, int rows) {
-        merge_rows<F, channels, mode>(first_row + y * pitch, pitch, from, end, rows, colors);
-        const int merged = (end - from) * rows;
-        colors += channels * merged, count -= merged, y += rows;
-    };
-    if (x != left) merge(x, std::min(right, x + count), 1);
-    if (count >= width) merge(left, right, count / width);
-    if (count > 0) merge(left, left + count, 1);
-}
-
-// True if group `b` goes on in the rectangle where `a`, all of whose lanes are drawn, ends.
-template <int N>
-inline bool goes_on(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
-    if (b.layout != GroupLayout::Rectangle || b.left != a.left || b.right != a.right) return false;
-    return b.x[0] == a.x[N - 1] + 1 ? b.y[0] == a.y[N - 1] : b.x[0] == b.left && a.x[N - 1] + 1 == a.right && b.y[0] == a.y[N - 1] + 1;
 }
 
 // The groups' colours into one target.
@@ -251,7 +236,7 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
     constexpr int lanes = lanes_of<F>, channels = kept_channels<format, mode>;
     constexpr bool has_spans = plain_floats<format, mode> != 0 && lanes >= 4;
     // Texel after texel; round them what a span may read too much.
-    alignas(64) float colors_and_more[channels * lanes * groups_per_flush + 2 * lanes];
+    alignas(64) float colors_and_more[channels * lanes * groups_per_flush<lanes> + 2 * lanes];
     float* const all_colors = colors_and_more + lanes;
     store_lanes(colors_and_more, F(0.0f));
     store_lanes(all_colors + channels * lanes * work.count, F(0.0f));
@@ -277,13 +262,20 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
                 merge_rows_of_four<F, format, mode>(texel(0), work.pitch, colors, mask);
                 continue;
             }
-            if (group.layout == GroupLayout::Rectangle && aligned && without_gaps(mask)) {
-                int count = __builtin_popcount(mask);
-                for (; g + 1 < work.count && work.masks[g] == (1u << lanes) - 1u && goes_on(work.groups[g], work.groups[g + 1]) && without_gaps(work.masks[g + 1]); ++g)
-                    count += __builtin_popcount(work.masks[g + 1]);
-                merge_rectangle<F, channels, mode>(work.first_row, work.pitch, group.left, group.right, group.x[0], group.y[0], colors, count);
-                continue;
+        }
+        if (group.layout == GroupLayout::Splat) {
+            const SplatPlace& s = group.splat;
+            std::byte* row = work.first_row + s.top * work.pitch;
+            g += (s.width * s.height - 1) / lanes;
+            if constexpr (has_spans) {
+                if (aligned) {
+                    merge_rows<F, channels, mode>(row, work.pitch, s.left, s.left + s.width, s.height, colors);
+                    continue;
+                }
             }
+            for (int y = 0; y < s.height; ++y, row += work.pitch)
+                for (int x = s.left; x < s.left + s.width; ++x, colors += channels) merge_texel<format, mode>(how, row + x * bytes_per_texel(format), colors);
+            continue;
         }
         merge_texels<format, mode>(how, texel, colors, mask);
     }
@@ -303,7 +295,7 @@ template <class F>
 inline void merge(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>* groups, int count, const float* results, int result_stride,
                   PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
-    std::uint32_t masks[groups_per_flush];
+    std::uint32_t masks[groups_per_flush<lanes>];
     std::uint64_t fragments = 0;
     for (int g = 0; g < count; ++g) {
         masks[g] = groups[g].mask;

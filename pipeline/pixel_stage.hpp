@@ -53,11 +53,13 @@ template <class F, class VF, class Vf>
 [[gnu::always_inline]] inline void load_corners(CornerValues<VF>& out, const FragmentGroup<lanes_of<F>>& group, const std::byte* records) {
     if (group.uniform) {
         const Vf* vertices = reinterpret_cast<const Vf*>(records);
-        const Vf &a = vertices[group.corner[0][0]], &b = vertices[group.corner[1][0]], &c = vertices[group.corner[2][0]], &leading = vertices[group.leading[0]];
+        const Vf& leading = vertices[group.leading[0]];
+        const Vf &a = group.constant ? leading : vertices[group.corner[0][0]], &b = group.constant ? leading : vertices[group.corner[1][0]];
+        const Vf& c = group.constant ? leading : vertices[group.corner[2][0]];
         for_each_varying<VF, Vf>([&](auto wide, auto narrow, auto mode) __attribute__((always_inline)) {
-            if constexpr (mode() == Interpolation::Flat) {
+            if (mode() == Interpolation::Flat || group.constant) {
                 spread(out.first.*wide, leading.*narrow);
-            } else {
+            } else if constexpr (mode() != Interpolation::Flat) {
                 spread(out.first.*wide, a.*narrow);
                 spread(out.to_second.*wide, b.*narrow - a.*narrow);
                 spread(out.to_third.*wide, c.*narrow - a.*narrow);
@@ -107,18 +109,19 @@ template <class F, class VF, class Vf>
 // True where both groups' fragments belong to one primitive, as far as what they interpolate goes.
 template <int N>
 inline bool same_vertices(const FragmentGroup<N>& a, const FragmentGroup<N>& b) {
-    return a.uniform && b.uniform && a.leading[0] == b.leading[0] && a.corner[0][0] == b.corner[0][0] && a.corner[1][0] == b.corner[1][0] && a.corner[2][0] == b.corner[2][0];
+    if (!a.uniform || !b.uniform || a.constant != b.constant || a.leading[0] != b.leading[0]) return false;
+    return a.constant || (a.corner[0][0] == b.corner[0][0] && a.corner[1][0] == b.corner[1][0] && a.corner[2][0] == b.corner[2][0]);
 }
 
 template <class F>
-[[gnu::always_inline]] inline PixelInput<F> system_input(const FragmentGroup<lanes_of<F>>& group) {
+[[gnu::always_inline]] inline PixelInput<F> system_input(const PixelWork& work, const FragmentGroup<lanes_of<F>>& group) {
     PixelInput<F> in;
     in.position = vec4<F>(to_float(load_lanes<LaneInt<F>>(group.x)) + 0.5f, to_float(load_lanes<LaneInt<F>>(group.y)) + 0.5f, load_lanes<F>(group.z), load_lanes<F>(group.w));
     in.point_coord = vec2<F>(load_lanes<F>(group.point_x), load_lanes<F>(group.point_y));
     in.primitive_id = group.uniform ? LaneUint<F>(group.primitive_id[0]) : load_lanes<LaneUint<F>>(group.primitive_id);
     in.front_facing = group.uniform ? LaneMask<F>(group.front_facing[0] != 0) : load_lanes<LaneUint<F>>(group.front_facing) != LaneUint<F>(0u);
-    in.layer = LaneInt<F>(group.layer);
-    in.level = LaneInt<F>(group.level);
+    in.layer = LaneInt<F>(work.layer);
+    in.level = LaneInt<F>(work.level);
     return in;
 }
 
@@ -167,10 +170,10 @@ void shade_pixels(const PixelWork& work) {
             FragmentGroup<lanes_of<F>>& group = groups[g];
             float* results = work.results + static_cast<std::size_t>(g) * work.result_stride;
             if constexpr (std::is_void_v<In>) {
-                store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(group)));
+                store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(work, group)));
             } else {
                 const VF in = interpolate<F, VF, Vf>(corners, group);
-                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(group)));
+                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(work, group)));
                 else store_result<F>(results, group.mask, shader.template operator()<F>(in));
             }
         }

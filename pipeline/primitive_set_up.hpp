@@ -235,7 +235,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         if (none(drawn)) continue;
         const F inverse_w = F(1.0f) / clip_w;
         const F x = (clip_x * inverse_w) * viewport.scale_x + viewport.offset_x, y = (clip_y * inverse_w) * viewport.scale_y + viewport.offset_y;
-        const F z = (clip_z * inverse_w) * draw.depth_scale + draw.depth_offset;
+        const F z = min(max((clip_z * inverse_w) * draw.depth_scale + draw.depth_offset, draw.min_depth), draw.max_depth);
         const F size = vertices.point_size ? of_vertex(vertices.point_size) : F(draw.state.rasterizer.point_size);
         drawn = drawn & (abs(x) <= guard_high) & (abs(y) <= guard_high) & (size > 0.0f) & (inverse_w <= 0x1.fffffep127f);
 
@@ -266,7 +266,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         float* words = reinterpret_cast<float*>(records);
         const auto w = [](I value) { return as_word<F>(value); };
         store_rows4(words, offset, w(left), w(top), w(right), w(bottom));
-        store_rows4(words + 4, offset, to_float(sx) * (1.0f / subpixels), to_float(sy) * (1.0f / subpixels), size, z);
+        store_rows4(words + 4, offset, to_float(sx) * (1.0f / subpixels), to_float(sy) * (1.0f / subpixels), F(1.0f) / size, z);
         store_rows4(words + 8, offset, clip_w, w(vertex + I(static_cast<std::int32_t>(batch.first_vertex))), w(primitive_id), w(target_index));
         // Points that lie in one tile are noted in lanes, those between two of the others one by one.
         const M one_tile = drawn & ((((left ^ (right - 1)) | (top ^ (bottom - 1))) & -tile_size) == 0);

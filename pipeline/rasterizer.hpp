@@ -26,6 +26,9 @@ class TileRasterizer {
     // A triangle that lies within so many pixels is one whose fragments do not fill groups of their own.
     static constexpr int medium = 64;
     static constexpr std::uint32_t all_lanes_ = (1u << lanes) - 1u;
+    // A point that lies within so many columns and rows is drawn row after row, a wider one in blocks.
+    static constexpr int narrow = 16;
+    static_assert(narrow * narrow <= fragments_per_flush);
 
 public:
     TileRasterizer(const DrawContext& draw, int tile, TileScratch& scratch)
@@ -286,27 +289,47 @@ private:
         const int left = std::max(r.left, left_), top = std::max(r.top, top_), right = std::min(r.right - 1, right_), bottom = std::min(r.bottom - 1, bottom_);
         if (left > right || top > bottom) return;
         const int width = right - left + 1, height = bottom - top + 1;
-        constexpr int few = 4, narrow = 16;
+        constexpr int few = 4;
         if (lanes == 1 || width * height <= few) {
             for (int y = top; y <= bottom; ++y)
                 for (int x = left; x <= right; ++x) push(x, y, record);
             return;
         }
         close_packed();
-        if (width <= narrow && height <= narrow) draw_dense_point(r, left, top, width, height);
-        else draw_point_blocks(r, left, top, right, bottom);
+        if (width > narrow || height > narrow) draw_point_blocks(r, left, top, right, bottom);
+        else if (draw_.keeps_all) draw_splat(r, left, top, width, height);
+        else draw_dense_point(r, left, top, width, height);
     }
 
-    // Row after row without gaps, from group to group.
+    // Row after row without gaps, from group to group, all in one flush. What the loop reads is at hand: a group's stores
+    // could be to anything, as far as compilers know.
+    void draw_splat(const PointRecord& r, int left, int top, int width, int height) {
+        if (width != dense_width_) lay_out_dense(width);
+        const int fragments = width * height;
+        if (fragments > (groups_per_flush<lanes> - count_) * lanes) flush();
+        const bool placed = draw_.needs_z_w;
+        const PointLanes point(r);
+        Group* g = groups_ + count_;
+        I x = dense_x_, y = dense_y_;
+        for (int first = 0; first < fragments; first += lanes, ++g) {
+            fill_point_group(*g, point, I(left) + x, I(top) + y, placed);
+            g->mask = fragments - first >= lanes ? all_lanes_ : (1u << (fragments - first)) - 1u;
+            g->layout = GroupLayout::Splat;
+            g->splat = {left, top, width, height, first};
+            step_dense(x, y, width);
+        }
+        count_ = static_cast<int>(g - groups_);
+        if (draw_.kernels->shade_pixels) scratch_.statistics.ps_invocations += static_cast<unsigned>(fragments);
+        if (count_ == groups_per_flush<lanes>) flush();
+    }
+
+    // The same where fragments may be lost.
     void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
         if (width != dense_width_) lay_out_dense(width);
         I x = dense_x_, y = dense_y_;
-        const float inverse_size = 1.0f / r.size;
         for (int remaining = width * height; remaining > 0; remaining -= lanes) {
-            Group& g = groups_[count_];
-            g.layout = GroupLayout::Rectangle;
-            g.left = left, g.right = left + width;
-            add_splat(r, inverse_size, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
+            groups_[count_].layout = GroupLayout::Loose;
+            add_point_group(r, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
             step_dense(x, y, width);
         }
     }
@@ -327,39 +350,43 @@ private:
     }
 
     void draw_point_blocks(const PointRecord& r, int left, int top, int right, int bottom) {
-        const float inverse_size = 1.0f / r.size;
         for (int y = top & -block_height; y <= bottom; y += block_height) {
             for (int x = left & -block_width; x <= right; x += block_width) {
                 const I px = I(x) + lane_x_, py = I(y) + lane_y_;
                 Group& g = groups_[count_];
                 g.layout = whole_rows(x, y) ? GroupLayout::RowsOfFour : GroupLayout::Loose;
-                add_splat(r, inverse_size, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
+                add_point_group(r, px, py, mask_bits((px >= I(left)) & (px <= I(right)) & (py >= I(top)) & (py <= I(bottom))));
             }
         }
     }
 
-    void add_splat(const PointRecord& r, float inverse_size, I px, I py, std::uint32_t mask) {
+    void add_point_group(const PointRecord& r, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
-        g.uniform = g.constant = true;
-        store_lanes(g.x, px);
-        store_lanes(g.y, py);
-        place_in_point(g, px, py, F(r.x), F(r.y), F(inverse_size), F(r.z), F(r.w));
+        fill_point_group(g, PointLanes(r), px, py, draw_.needs_z_w);
         if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
-        for (int c = 0; c < 3; ++c) g.corner[c][0] = r.vertex;
-        g.leading[0] = r.vertex;
-        g.primitive_id[0] = r.primitive_id;
-        g.front_facing[0] = 1;
         add_group();
     }
 
+    struct PointLanes {
+        explicit PointLanes(const PointRecord& r) : x(r.x), y(r.y), inverse_size(r.inverse_size), z(r.z), w(r.w), vertex(r.vertex), primitive_id(r.primitive_id) {}
+        F x, y, inverse_size, z, w;
+        std::uint32_t vertex, primitive_id;
+    };
+    static void fill_point_group(Group& g, const PointLanes& point, I px, I py, bool placed) {
+        g.uniform = g.constant = true;
+        g.leading[0] = point.vertex;
+        g.primitive_id[0] = point.primitive_id;
+        g.front_facing[0] = 1;
+        store_lanes(g.x, px);
+        store_lanes(g.y, py);
+        if (placed) place_in_point(g, px, py, point.x, point.y, point.inverse_size, point.z, point.w);
+    }
+
     // A point's values are its vertex's: no weights. Its depth is that of its centre.
-    void place_in_point(Group& g, I px, I py, F x, F y, F inverse_size, F z, F w) {
-        if (draw_.needs_smooth) store_lanes(g.b1, F(0.0f)), store_lanes(g.b2, F(0.0f));
-        if (draw_.needs_linear) store_lanes(g.l1, F(0.0f)), store_lanes(g.l2, F(0.0f));
-        if (!draw_.needs_z_w) return;
-        store_lanes(g.z, clamp_depth(z));
+    static void place_in_point(Group& g, I px, I py, F x, F y, F inverse_size, F z, F w) {
+        store_lanes(g.z, z);
         store_lanes(g.w, w);
         store_lanes(g.point_x, (to_float(px) + 0.5f - x) * inverse_size + 0.5f);
         store_lanes(g.point_y, (to_float(py) + 0.5f - y) * inverse_size + 0.5f);
@@ -487,13 +514,12 @@ private:
             const I at = record * static_cast<int>(sizeof(PointRecord) / 4);
             F a[4], b[4];
             gather4(words + 8, at, b);
-            if (draw_.needs_smooth || draw_.needs_linear || draw_.needs_z_w) {
+            if (draw_.needs_z_w) {
                 gather4(words + 4, at, a);
-                place_in_point(g, px, py, a[0], a[1], F(1.0f) / a[2], a[3], b[0]);
+                place_in_point(g, px, py, a[0], a[1], a[2], a[3], b[0]);
             }
             if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
             if (!mask) return;
-            for (int c = 0; c < 3; ++c) store_word(g.corner[c], b[1]);
             store_word(g.leading, b[1]);
             store_word(g.primitive_id, b[2]);
             store_lanes(g.front_facing, LaneUint<F>(1u));
@@ -503,10 +529,8 @@ private:
     }
 
     void add_group() {
-        groups_[count_].layer = target_.layer;
-        groups_[count_].level = target_.level;
         scratch_.statistics.ps_invocations += draw_.kernels->shade_pixels ? static_cast<unsigned>(__builtin_popcount(groups_[count_].mask)) : 0u;
-        if (++count_ == groups_per_flush) flush();
+        if (++count_ == groups_per_flush<lanes>) flush();
     }
 
     // Shades the groups that wait and merges what comes of them.
@@ -528,10 +552,13 @@ private:
             const std::ptrdiff_t pitch = target_.color_pitch[t], texel_bytes = draw_.color[t].texel_bytes;
             for (int g = 0; g < count_; ++g) {
                 const Group& group = groups_[g];
-                if (group.layout == GroupLayout::Rectangle) {
-                    for (int y = group.y[0]; y <= group.y[lanes - 1]; ++y) {
-                        __builtin_prefetch(first + y * pitch + group.left * texel_bytes, 1);
-                        __builtin_prefetch(first + y * pitch + (group.right - 1) * texel_bytes, 1);
+                if (group.layout == GroupLayout::Splat) {
+                    const SplatPlace& s = group.splat;
+                    if (s.first != 0) continue;
+                    const std::byte* at = first + s.top * pitch + s.left * texel_bytes;
+                    for (int row = 0; row < s.height; ++row, at += pitch) {
+                        __builtin_prefetch(at, 1);
+                        __builtin_prefetch(at + (s.width - 1) * texel_bytes, 1);
                     }
                 } else {
                     for (int l = 0; l < lanes; l += group.layout == GroupLayout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
@@ -541,7 +568,8 @@ private:
     }
     void shade(int first, int count) {
         if (!draw_.kernels->shade_pixels) return;
-        draw_.kernels->shade_pixels({draw_.program.pixel_shader, draw_.vertex_records, groups_ + first, count, scratch_.results + first * result_stride_, result_stride_});
+        draw_.kernels->shade_pixels({draw_.program.pixel_shader, draw_.vertex_records, groups_ + first, count, scratch_.results + first * result_stride_, result_stride_,
+                                     target_.layer, target_.level});
     }
     void flush_observed() {
         for (int g = 0; g < count_; ++g) {

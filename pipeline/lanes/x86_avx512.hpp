@@ -117,15 +117,14 @@ inline void gather4(const float* base, IntLanes<16> index, FloatLanes<16> out[4]
     avx512::transpose_quads(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 4; ++k) out[k] = avx512::f(rows[k]);
 }
+// Shuffles of whole registers have one port, blends two: two shuffles and a blend for each register stored.
 inline void store_transposed4(float* memory, FloatLanes<16> x, FloatLanes<16> y, FloatLanes<16> z, FloatLanes<16> w) {
-    __m512 a = avx512::ps(x), b = avx512::ps(y), c = avx512::ps(z), d = avx512::ps(w);
-    avx512::transpose_quads(a, b, c, d);  // a holds lanes 0, 4, 8, 12; b lanes 1, 5, 9, 13; ...
-    const __m512 ab_even = _mm512_shuffle_f32x4(a, b, 0x88), ab_odd = _mm512_shuffle_f32x4(a, b, 0xdd);  // a0 a8 b1 b9 | a4 a12 b5 b13
-    const __m512 cd_even = _mm512_shuffle_f32x4(c, d, 0x88), cd_odd = _mm512_shuffle_f32x4(c, d, 0xdd);
-    _mm512_storeu_ps(memory, _mm512_shuffle_f32x4(ab_even, cd_even, 0x88));
-    _mm512_storeu_ps(memory + 16, _mm512_shuffle_f32x4(ab_odd, cd_odd, 0x88));
-    _mm512_storeu_ps(memory + 32, _mm512_shuffle_f32x4(ab_even, cd_even, 0xdd));
-    _mm512_storeu_ps(memory + 48, _mm512_shuffle_f32x4(ab_odd, cd_odd, 0xdd));
+    for (int k = 0; k < 16; k += 4) {
+        // The first operand's lanes count from 0, the second's from 16.
+        const __m512i index = _mm512_setr_epi32(k, k + 16, k, k + 16, k + 1, k + 17, k + 1, k + 17, k + 2, k + 18, k + 2, k + 18, k + 3, k + 19, k + 3, k + 19);
+        const __m512 xy = _mm512_permutex2var_ps(avx512::ps(x), index, avx512::ps(y)), zw = _mm512_permutex2var_ps(avx512::ps(z), index, avx512::ps(w));
+        _mm512_storeu_ps(memory + 4 * k, _mm512_mask_blend_ps(0xcccc, xy, zw));
+    }
 }
 inline void store_rows4(float* memory, const std::int32_t* offset, FloatLanes<16> x, FloatLanes<16> y, FloatLanes<16> z, FloatLanes<16> w) {
     __m512 rows[4] = {avx512::ps(x), avx512::ps(y), avx512::ps(z), avx512::ps(w)};

@@ -4,6 +4,7 @@
 // can share a pixel the depth test works on all lanes at once. A NaN is stored as 0x7fc00000.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "pipeline/draw_context.hpp"
@@ -27,6 +28,27 @@ inline LaneMask<F> passes(CompareOp op, F value, F reference) {
     return LaneMask<F>(false);
 }
 
+// Tests a group's depths one after another, as two may be of one pixel; `stored_as` is what to write of those that pass.
+// Without branches: which fragments lie behind others would be guessed wrong.
+template <int N, class Compare>
+[[gnu::always_inline]] inline std::uint32_t test_depths(const RasterTarget& target, const FragmentGroup<N>& group, const float* depth, const float* stored_as, std::uint32_t mask,
+                                                        bool write, Compare compare) {
+    std::uint32_t passed = 0;
+    for (std::uint32_t bits = mask; bits; bits &= bits - 1) {
+        const int l = __builtin_ctz(bits);
+        std::byte* const at = target.depth + group.y[l] * target.depth_pitch + group.x[l] * 4;
+        std::uint32_t before, after;
+        std::memcpy(&before, at, 4);
+        std::memcpy(&after, stored_as + l, 4);
+        const std::uint32_t pass = compare(depth[l], std::bit_cast<float>(before)) ? 1u : 0u;
+        passed |= pass << l;
+        if (!write) continue;
+        after = before ^ ((before ^ after) & (0u - pass));
+        std::memcpy(at, &after, 4);
+    }
+    return passed;
+}
+
 // Tests a group's fragments against the depth target, writes the depth of those that pass, returns their lanes.
 template <class F>
 inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& target, const FragmentGroup<lanes_of<F>>& group, const float* depth, std::uint32_t mask,
@@ -39,18 +61,20 @@ inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& tar
         mask = mask_bits(pass);
         if (state.write && mask) store_rows_of_four(first, target.depth_pitch, select(is_nan(value), F(canonical_nan), value), mask);
     } else {
+        const F value = load_lanes<F>(depth);
+        alignas(64) float stored_as[lanes];
+        store_lanes(stored_as, select(is_nan(value), F(canonical_nan), value));
+        const auto one_by_one = [&](auto compare) __attribute__((always_inline)) { return test_depths(target, group, depth, stored_as, mask, state.write, compare); };
         std::uint32_t passed = 0;
-        for (std::uint32_t bits = mask; bits; bits &= bits - 1) {
-            const int l = __builtin_ctz(bits);
-            std::byte* at = target.depth + group.y[l] * target.depth_pitch + group.x[l] * 4;
-            float stored;
-            std::memcpy(&stored, at, 4);
-            if (!passes<float>(state.test, depth[l], stored)) continue;
-            passed |= 1u << l;
-            if (state.write) {
-                const float value = depth[l] != depth[l] ? canonical_nan : depth[l];
-                std::memcpy(at, &value, 4);
-            }
+        switch (state.test) {
+            case CompareOp::Never: break;
+            case CompareOp::Less: passed = one_by_one([](float a, float b) { return a < b; }); break;
+            case CompareOp::Equal: passed = one_by_one([](float a, float b) { return a == b; }); break;
+            case CompareOp::LessEqual: passed = one_by_one([](float a, float b) { return a <= b; }); break;
+            case CompareOp::Greater: passed = one_by_one([](float a, float b) { return a > b; }); break;
+            case CompareOp::NotEqual: passed = one_by_one([](float a, float b) { return a != b; }); break;
+            case CompareOp::GreaterEqual: passed = one_by_one([](float a, float b) { return a >= b; }); break;
+            case CompareOp::Always: passed = one_by_one([](float, float) { return true; }); break;
         }
         mask = passed;
     }

@@ -98,6 +98,13 @@ private:
         if (left > right || top > bottom) return;
         if (r.small) {
             const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
+            if (lanes == 16 && whole) {
+                // A pixel per lane of the four rows of four.
+                store_lanes(packed_record_ + packed_, I(static_cast<std::int32_t>(record)));
+                packed_ += compress_lanes(packed_xy_ + packed_, lane_xy_ + ((r.top << 16) + r.left), r.coverage);
+                if (packed_ >= lanes) close_packed();
+                return;
+            }
             for (std::uint32_t bits = r.coverage; bits; bits &= bits - 1) {
                 const int k = __builtin_ctz(bits), x = r.left + (k & 3), y = r.top + (k >> 2);
                 if (whole || (x >= left && x <= right && y >= top && y <= bottom)) push(x, y, record);

@@ -129,14 +129,20 @@ private:
         const int width = right - left + 1;
         if (width != dense_width_) lay_out_dense(width);
         I x = dense_x_, y = dense_y_;
+        int packed = packed_;  // not in memory, where the next lanes would wait for it
         for (int remaining = width * (bottom - top + 1); remaining > 0; remaining -= lanes) {
             const auto at = [&](int k) { return value[k] + x * step_x[k] + y * step_y[k]; };
             const std::uint32_t mask = mask_bits(((at(0) | at(1) | at(2)) >= I(0)) & first_lanes<F>(remaining));
-            store_lanes(packed_record_ + packed_, I(static_cast<std::int32_t>(record)));
-            packed_ += compress_lanes(packed_xy_ + packed_, I((top << 16) + left) + x + (y << 16), mask);
-            if (packed_ >= lanes) close_packed();
+            store_lanes(packed_record_ + packed, I(static_cast<std::int32_t>(record)));
+            packed += compress_lanes(packed_xy_ + packed, I((top << 16) + left) + x + (y << 16), mask);
+            if (packed >= lanes) {
+                packed_ = packed;
+                close_packed();
+                packed = packed_;
+            }
             step_dense(x, y, width);
         }
+        packed_ = packed;
     }
 
     // Part by part, a block per lane; then block by block, a pixel per lane.
@@ -209,14 +215,27 @@ private:
             const int block = __builtin_ctz(blocks);
             add_block(r, x + block % block_width * block_width, y + block / block_width * block_height, all_lanes_);
         }
-        for (std::uint32_t blocks = touched & ~covered; blocks; blocks &= blocks - 1) {
-            const int block = __builtin_ctz(blocks), bx = x + block % block_width * block_width, by = y + block / block_width * block_height;
+        const auto block_x = [&](int block) { return x + block % block_width * block_width; };
+        const auto block_y = [&](int block) { return y + block / block_width * block_height; };
+        const auto inside_block = [&](int block) {
             M inside = ((repeat_lane(a, block) + edges[0].pixel_step) | (repeat_lane(b, block) + edges[1].pixel_step) | (repeat_lane(c, block) + edges[2].pixel_step)) >= I(0);
-            if (cut) inside = inside & inside_rectangle(bx, by);
-            const std::uint32_t mask = mask_bits(inside);
-            if (!draw_.early_depth) pending_ += compress_lanes(pending_xy_ + pending_, lane_xy_ + ((by << 16) + bx), mask);
-            else if (mask) add_block(r, bx, by, mask);
+            if (cut) inside = inside & inside_rectangle(block_x(block), block_y(block));
+            return mask_bits(inside);
+        };
+        std::uint32_t partial = touched & ~covered;
+        if (draw_.early_depth) {
+            for (; partial; partial &= partial - 1) {
+                const int block = __builtin_ctz(partial);
+                if (const std::uint32_t mask = inside_block(block)) add_block(r, block_x(block), block_y(block), mask);
+            }
+            return;
         }
+        int pending = pending_;  // not in memory, where the next block would wait for it
+        for (; partial; partial &= partial - 1) {
+            const int block = __builtin_ctz(partial);
+            pending += compress_lanes(pending_xy_ + pending, lane_xy_ + ((block_y(block) << 16) + block_x(block)), inside_block(block));
+        }
+        pending_ = pending;
         close_pending(r);
     }
 

@@ -41,6 +41,59 @@ template <class F> inline F min3(F a, F b, F c) { return min(min(a, b), c); }
 template <class F> inline F max3(F a, F b, F c) { return max(max(a, b), c); }
 template <class F> inline F as_word(LaneInt<F> x) { return bits_float(as_uint(x)); }
 
+// Notes which tiles the records touch that set-up appends, lane by lane: those that lie in one tile in lanes, the others one by
+// one (bin_record).
+template <class F>
+class RecordBinner {
+    using I = LaneInt<F>;
+    static constexpr int lanes = lanes_of<F>;
+
+public:
+    RecordBinner(const DrawContext& draw, Batch& batch) : draw_(draw), batch_(batch), lowest_tile_(batch.first_tile), highest_tile_(batch.last_tile) {}
+    ~RecordBinner() {
+        for (int l = 0; l < lanes; ++l) {
+            batch_.first_tile = std::min(batch_.first_tile, lane(lowest_tile_, l));
+            batch_.last_tile = std::max(batch_.last_tile, lane(highest_tile_, l));
+        }
+    }
+
+    // The lanes `drawn` as records, from batch.record_count on; pixels, right and bottom included.
+    void append(LaneMask<F> drawn, I target_index, I left, I top, I right, I bottom) {
+        const LaneMask<F> one_tile = drawn & ((((left ^ right) | (top ^ bottom)) & -tile_size) == 0);
+        I first_tile(draw_.targets->first_tile), tiles_x(draw_.targets->tiles_x);
+        if (draw_.target_layers * draw_.target_levels != 1) {
+            const I target_word = target_index * static_cast<int>(sizeof(RasterTarget) / 4);
+            first_tile = gather(&draw_.targets->first_tile, target_word), tiles_x = gather(&draw_.targets->tiles_x, target_word);
+        }
+        const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
+        lowest_tile_ = select(one_tile, min(tile, lowest_tile_), lowest_tile_);
+        highest_tile_ = select(one_tile, max(tile, highest_tile_), highest_tile_);
+        const std::uint32_t in_lanes = mask_bits(one_tile);
+        for (std::uint32_t rest = mask_bits(drawn); rest;) {
+            // Those before the next of the others, as long as there is room for a register.
+            const std::uint32_t others = rest & ~in_lanes, run = others ? rest & ((others & (~others + 1u)) - 1u) : rest;
+            if (run && batch_.pair_count + lanes <= draw_.pair_capacity) {
+                compress_lanes(batch_.pair_tile + batch_.pair_count, as_uint(tile), run);
+                store_lanes(batch_.pair_record + batch_.pair_count, as_uint(lane_index<F>() + batch_.record_count));
+                const int count = __builtin_popcount(run);
+                batch_.pair_count += count;
+                batch_.record_count += count;
+                rest &= ~run;
+                continue;
+            }
+            const int l = __builtin_ctz(rest);
+            bin_record(draw_, batch_, batch_.record_count, lane(target_index, l), lane(left, l), lane(top, l), lane(right, l), lane(bottom, l));
+            ++batch_.record_count;
+            rest &= rest - 1;
+        }
+    }
+
+private:
+    const DrawContext& draw_;
+    Batch& batch_;
+    I lowest_tile_, highest_tile_;
+};
+
 template <class F>
 void set_up_triangles(const DrawContext& draw, Batch& batch) {
     using I = LaneInt<F>;
@@ -52,6 +105,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
     const RasterizerState& state = draw.state.rasterizer;
     const bool one_target = draw.target_layers * draw.target_levels == 1;
     TriangleRecord* records = reinterpret_cast<TriangleRecord*>(batch.records);
+    RecordBinner<F> binner(draw, batch);
 
     for (int first = 0; first < batch.primitives.count; first += lanes) {
         const M active = first_lanes<F>(batch.primitives.count - first);
@@ -198,10 +252,7 @@ void set_up_triangles(const DrawContext& draw, Batch& batch) {
         store_rows4(words + 20, offset, w(v2), w(v0), w(primitive_id), w(target_index));
         store_rows4(words + 24, offset, w(select(front, I(1), I(0))), w(select(small, I(1), I(0))), bits_float(coverage), w(left));
         store_rows4(words + 28, offset, w(top), w(right), w(bottom), F(0.0f));
-        for (; batch.record_count < at; ++batch.record_count) {
-            const TriangleRecord& r = records[batch.record_count];
-            bin_record(draw, batch, batch.record_count, r.target, r.left, r.top, r.right, r.bottom);
-        }
+        binner.append(drawn, target_index, left, top, right, bottom);
     }
 }
 
@@ -213,7 +264,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
     const VertexArrays& vertices = batch.vertices;
     const bool one_target = draw.target_layers * draw.target_levels == 1;
     PointRecord* records = reinterpret_cast<PointRecord*>(batch.records);
-    I lowest_tile(batch.first_tile), highest_tile(batch.last_tile);
+    RecordBinner<F> binner(draw, batch);
 
     for (int first = 0; first < batch.primitives.count; first += lanes) {
         const M active = first_lanes<F>(batch.primitives.count - first);
@@ -268,38 +319,7 @@ void set_up_points(const DrawContext& draw, Batch& batch) {
         store_rows4(words, offset, w(left), w(top), w(right), w(bottom));
         store_rows4(words + 4, offset, to_float(sx) * (1.0f / subpixels), to_float(sy) * (1.0f / subpixels), F(1.0f) / size, z);
         store_rows4(words + 8, offset, clip_w, w(vertex + I(static_cast<std::int32_t>(batch.first_vertex))), w(primitive_id), w(target_index));
-        // Points that lie in one tile are noted in lanes, those between two of the others one by one.
-        const M one_tile = drawn & ((((left ^ (right - 1)) | (top ^ (bottom - 1))) & -tile_size) == 0);
-        I first_tile(draw.targets->first_tile), tiles_x(draw.targets->tiles_x);
-        if (!one_target) {
-            const I target_word = target_index * static_cast<int>(sizeof(RasterTarget) / 4);
-            first_tile = gather(&draw.targets->first_tile, target_word), tiles_x = gather(&draw.targets->tiles_x, target_word);
-        }
-        const I tile = first_tile + (top >> tile_bits) * tiles_x + (left >> tile_bits);
-        lowest_tile = select(one_tile, min(tile, lowest_tile), lowest_tile);
-        highest_tile = select(one_tile, max(tile, highest_tile), highest_tile);
-        const std::uint32_t in_lanes = mask_bits(one_tile);
-        for (std::uint32_t rest = drawn_bits; rest;) {
-            // Those before the next of the others, as long as there is room for a register.
-            const std::uint32_t others = rest & ~in_lanes, run = others ? rest & ((others & (~others + 1u)) - 1u) : rest;
-            if (run && batch.pair_count + lanes <= draw.pair_capacity) {
-                compress_lanes(batch.pair_tile + batch.pair_count, as_uint(tile), run);
-                store_lanes(batch.pair_record + batch.pair_count, as_uint(lane_index<F>() + batch.record_count));
-                const int count = __builtin_popcount(run);
-                batch.pair_count += count;
-                batch.record_count += count;
-                rest &= ~run;
-                continue;
-            }
-            const PointRecord& r = records[batch.record_count];
-            bin_record(draw, batch, batch.record_count, r.target, r.left, r.top, r.right - 1, r.bottom - 1);
-            ++batch.record_count;
-            rest &= rest - 1;
-        }
-    }
-    for (int l = 0; l < lanes; ++l) {
-        batch.first_tile = std::min(batch.first_tile, lane(lowest_tile, l));
-        batch.last_tile = std::max(batch.last_tile, lane(highest_tile, l));
+        binner.append(drawn, target_index, left, top, right - 1, bottom - 1);
     }
 }
 

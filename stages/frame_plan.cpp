@@ -68,12 +68,23 @@ private:
             leave_out("layers and surroundings of " + mesh.name, "what it shows is looked for among the triangles");
             dielectric = dielectric || world_.material_of(mesh).kind == SurfaceKind::Dielectric;
         }
-        if (dielectric) add({.kind = PassKind::TraceSeen, .name = "through specular objects", .why = "glass is looked through", .reads = {"triangles", "points", "eye depth"}, .writes = {"refracted points", "emission"}});
-        if (dielectric && settings_.inner_reflections) add({.kind = PassKind::TraceSeen, .name = "reflected inside specular objects", .why = "glass reflects inside", .reads = {"triangles", "points", "eye depth"}, .writes = {"points reflected inside", "emission"}, .branch = Branch::ReflectedInside});
-        if (!seen.empty()) add({.kind = PassKind::TraceSeen, .name = "reflected in specular objects", .why = "smooth surfaces reflect", .reads = {"triangles", "points", "eye depth"}, .writes = {"reflected points", "emission"}, .branch = Branch::Reflected});
+        const auto look = [&](Branch branch, const char* name, const char* why, const char* writes) {
+            for_each_channel([&](int channel, const char* color) {
+                add({.kind = PassKind::TraceSeen, .name = std::string(name) + color, .why = why, .reads = {"triangles", "points", "eye depth"}, .writes = {writes, "emission"}, .branch = branch, .channel = channel});
+            });
+        };
+        if (dielectric) look(Branch::Refracted, "through specular objects", "glass is looked through", "refracted points");
+        if (dielectric && settings_.inner_reflections) look(Branch::ReflectedInside, "reflected inside specular objects", "glass reflects inside", "points reflected inside");
+        if (!seen.empty()) look(Branch::Reflected, "reflected in specular objects", "smooth surfaces reflect", "reflected points");
     }
 
     bool exact() const { return settings_.tracing == Tracing::Exact; }
+    // With the channels that light is followed in, and how names tell them.
+    void for_each_channel(const auto& add_passes) const {
+        constexpr const char* colors[] = {", red", ", green", ", blue"};
+        if (!follows_channels(world_, settings_)) return add_passes(all_channels, "");
+        for (int c = 0; c < 3; ++c) add_passes(c, colors[c]);
+    }
 
     void plan_light(int l, bool receivers, bool casters) {
         const Light& light = world_.lights[l];
@@ -96,9 +107,15 @@ private:
             const bool dielectric = material.kind == SurfaceKind::Dielectric;
             const bool has_inside = dielectric && mesh.closed && !material.thin_walled && settings_.variant != mapping::Variant::Tutorial;
             const bool inside = has_inside && settings_.inner_reflections;
-            if (dielectric) plan_map({l, m, Branch::Refracted, true, inside}, caustic + ", refracted");
-            plan_map({l, m, Branch::Reflected, dielectric, inside}, caustic + ", reflected");
-            if (inside) plan_map({l, m, Branch::ReflectedInside, true, true}, caustic + ", reflected inside");
+            const auto plan_maps = [&](CausticMapPlan how, const char* what) {
+                for_each_channel([&](int channel, const char* color) {
+                    how.channel = channel;
+                    plan_map(how, caustic + what + color);
+                });
+            };
+            if (dielectric) plan_maps({l, m, Branch::Refracted, true, inside}, ", refracted");
+            plan_maps({l, m, Branch::Reflected, dielectric, inside}, ", reflected");
+            if (inside) plan_maps({l, m, Branch::ReflectedInside, true, true}, ", reflected inside");
             else if (dielectric) leave_out(caustic + ", reflected inside", has_inside ? "inner reflections are switched off" : "the object has no inside");
         }
     }
@@ -108,7 +125,7 @@ private:
         const int map = static_cast<int>(plan_.maps.size());
         plan_.maps.push_back(how);
         const auto with = [&](PassKind kind, const char* what, const char* why, std::vector<std::string> reads, std::vector<std::string> writes) {
-            add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = how.light, .mesh = how.mesh, .map = map, .branch = how.branch});
+            add({.kind = kind, .name = name + ": " + what, .why = why, .reads = std::move(reads), .writes = std::move(writes), .light = how.light, .mesh = how.mesh, .map = map, .branch = how.branch, .channel = how.channel});
         };
         with(PassKind::Photons, "photons", "the light is followed to where it lands", exact() ? std::vector<std::string>{"triangles"} : std::vector<std::string>{"object layers", "occluders", "receiver map"}, {"photons"});
         with(PassKind::FitCausticView, "fit view", "the map's texels go where the light lands", {"photons"}, {"map view"});
@@ -138,6 +155,10 @@ private:
 };
 
 }  // namespace
+
+bool follows_channels(const World& world, const Settings& settings) {
+    return settings.tracing == Tracing::Exact && std::any_of(world.meshes.begin(), world.meshes.end(), [&](const Mesh& m) { return world.material_of(m).dispersion > 0.0f; });
+}
 
 View eye_view(const World& world, const Settings& settings) {
     const Camera& camera = world.camera;

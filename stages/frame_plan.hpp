@@ -41,14 +41,16 @@ struct Pass {
     int mesh = -1;      // in World::meshes: the specular object
     int map = -1;       // caustic map number
     Branch branch = Branch::Refracted;
+    int channel = all_channels;
 };
 
-// Light of one lamp by way of one object and one branch.
+// Light of one lamp by way of one object and one branch, in exact worlds that disperse it of one channel.
 struct CausticMapPlan {
     int light, mesh;
     Branch branch;
     bool other_branch;  // what is refracted and what is reflected have a map each
     bool inside_branch;  // so has what is reflected inside
+    int channel = all_channels;
 };
 
 struct FramePlan {
@@ -59,6 +61,9 @@ struct FramePlan {
     };
     std::vector<LeftOut> left_out;
 };
+
+// Whether red, green and blue go ways of their own.
+bool follows_channels(const World& world, const Settings& settings);
 
 // All passes that a world of these meshes, materials and numbers of lights can need.
 FramePlan make_full_plan(const World& world, const Settings& settings);

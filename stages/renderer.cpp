@@ -45,7 +45,9 @@ struct PointPictures {
     Texture positions, normals, albedo;
     SurfacePoints view() const { return {positions, normals, albedo}; }
 };
+// What the eye sees first, and through and in specular objects; those again for green and for blue where channels are followed.
 enum PointSource { first, refracted, reflected, reflected_inside, point_sources };
+constexpr int sources_per_channel = point_sources - refracted;
 
 // A specular object as a view sees it.
 struct LayerPictures {
@@ -113,7 +115,7 @@ struct Renderer::Impl : PassDraws {
 
     int width, height;  // of the samples
     float reach;
-    PointPictures points[point_sources];
+    PointPictures points[point_sources + 2 * sources_per_channel];
     Texture eye_depth, direct, caustic, emission, small_direct, small_caustic, small_emission;
     LayerPictures seen_layers;
     Texture impostor_depth, impostor_normals, impostor_albedo, impostor_ids;
@@ -248,9 +250,12 @@ Renderer::Impl::Impl(Device& d, const World& w, const Settings& s, std::shared_p
     for (const Light& l : world.lights)
         if (l.kind != LightKind::Directional) reach = std::max(reach, glm::length(l.position - scene_centre()) + glm::length(world.high - world.low));
     for (int k = 0; k < (any_specular ? exact() && settings.inner_reflections ? point_sources : reflected_inside : 1); ++k) {
-        points[k].positions = target(Format::RGBA32F, width, height, "positions");
-        points[k].normals = target(Format::RGBA32F, width, height, "normals");
-        points[k].albedo = target(Format::RGBA32F, width, height, "albedo");
+        for (int channel = 0; channel < (k != first && follows_channels(world, settings) ? 3 : 1); ++channel) {
+            PointPictures& p = points[k + channel * sources_per_channel];
+            p.positions = target(Format::RGBA32F, width, height, "positions");
+            p.normals = target(Format::RGBA32F, width, height, "normals");
+            p.albedo = target(Format::RGBA32F, width, height, "albedo");
+        }
     }
     eye_depth = target(Format::D32F, width, height, "eye depth");
     direct = target(Format::RGBA32F, width, height, "direct");
@@ -480,9 +485,10 @@ void Renderer::Impl::trace_photons_exactly(const Pass& pass, const CasterView& f
     photons.tracer.world = traced->view();
     photons.tracer.bounces = bounces_of(settings);
     photons.tracer.branch = pass.branch;
+    photons.tracer.channel = pass.channel;
     if (settings.inner_reflections) photons.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
     photons.tracer.chance_from_start = pass.branch == Branch::Reflected || !how.inside_branch;
-    photons.tracer.seed = static_cast<std::uint64_t>(pass.map);
+    photons.tracer.seed = static_cast<std::uint64_t>(pass.channel == all_channels ? pass.map : pass.map / 3);  // channels take the same chances
     photons.light = LightSource(light);
     photons.rays = {lit_part(light, from.view), from.exceeded, settings.photons, first_row};
     photons.mesh = pass.mesh;
@@ -679,6 +685,7 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
     trace.tracer.world = traced->view();
     trace.tracer.bounces = bounces_of(settings);
     trace.tracer.branch = pass.branch;
+    trace.tracer.channel = pass.channel;
     trace.tracer.light = false;
     if (settings.inner_reflections) trace.tracer.partial = pass.branch == Branch::ReflectedInside ? Partial::PickedUp : Partial::HandedOn;
     trace.tracer.seed = ~static_cast<std::uint64_t>(pass.branch);
@@ -692,7 +699,8 @@ void Renderer::Impl::trace_seen_exactly(const Pass& pass) {
 }
 
 void Renderer::Impl::store_seen(const Pass& pass, const auto& shader) {
-    const PointPictures& to = points[pass.branch == Branch::Reflected ? reflected : pass.branch == Branch::ReflectedInside ? reflected_inside : refracted];
+    const int source = pass.branch == Branch::Reflected ? reflected : pass.branch == Branch::ReflectedInside ? reflected_inside : refracted;
+    const PointPictures& to = points[source + std::max(pass.channel, 0) * sources_per_channel];
     PipelineState s = screen_state("trace seen");
     s.blend[3] = blend_additive;
     draw(Program{CoverScreen{}, shader}, s, {.vertices = vertex_count(3), .render_targets = {to.positions.mip(), to.normals.mip(), to.albedo.mip(), emission.mip()}});

@@ -25,12 +25,16 @@ struct TriangleFacts {
 
 enum class SurfaceKind : std::uint8_t { Lambert, Dielectric, Mirror };
 
+// Light is followed with all its channels together; where a material disperses it, with red (0), green (1) and blue (2) apart.
+inline constexpr int all_channels = -1;
+
 struct Material {
     std::string name;
     SurfaceKind kind = SurfaceKind::Lambert;
     glm::vec3 base_color{1.0f};          // albedo; tint of what is transmitted or reflected
     int texture = -1;                    // of the base colour, in World::textures
-    float ior = 1.5f;
+    float ior = 1.5f;                    // of green
+    float dispersion = 0.0f;             // of a solid dielectric: how much higher blue's index is, and how much lower red's
     bool thin_walled = false;            // a dielectric without a volume: light goes straight through
     glm::vec3 attenuation{0.0f};         // of the volume, 1/m
     glm::vec3 emission{0.0f};            // W/(sr m^2)

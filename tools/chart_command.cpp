@@ -149,7 +149,7 @@ void make_model(const ChartArguments& a) {
         const stages::Settings& size = steps.front().settings;
         const chart::Truth truth = chart::truth_of(view.name, scene, size.width, size.height, a.truth, {});
         const chart::Probe probe = chart::probe(device, renderer.world(), chart::trace_world(device, renderer.world()), scene, size.width, size.height);
-        chart::ModelRow row{view.scene, view.name, probe.change, probe.detail, probe.caustic_share, probe.medium, probe.dispersion, probe.cost, {}, {}, {}};
+        chart::ModelRow row{view.scene, view.name, probe.change, probe.detail, probe.caustic_share, probe.medium, probe.cost, {}, {}, {}};
         for (const RenderOptions& step : steps) {
             const SceneRendering r = renderer.render(step.settings);
             const double error = chart::difference_from(truth, r.picture, executor).relmse, noise = std::isnan(truth.noise) ? 0 : truth.noise;
@@ -157,8 +157,7 @@ void make_model(const ChartArguments& a) {
             row.costs.push_back(chart::cost_of(chart::amounts_of(r.passes, step.settings)));
             row.expected_costs.push_back(chart::expected_cost(probe, step.settings));
         }
-        std::printf("%-22s change %-8.3g detail %-8.3g caustic %-6.3g%s%s noise %.1g: relMSE", view.name.c_str(), row.change, row.detail, row.caustic_share, row.medium ? " medium" : "",
-                    row.dispersion ? " dispersion" : "", truth.noise);
+        std::printf("%-22s change %-8.3g detail %-8.3g caustic %-6.3g%s noise %.1g: relMSE", view.name.c_str(), row.change, row.detail, row.caustic_share, row.medium ? " medium" : "", truth.noise);
         for (const double e : row.errors) std::printf(" %.3g", e);
         std::printf("; cost");
         for (std::size_t k = 0; k < steps.size(); ++k) std::printf(" %.0f (%.0f)", row.costs[k], row.expected_costs[k]);

@@ -44,6 +44,9 @@ float splat_reach(const stages::Settings& settings) {
 
 std::vector<std::string> failure_notes(const stages::World& world, const stages::Settings& settings) {
     std::vector<std::string> notes;
+    if (settings.tracing == stages::Tracing::ImageSpace)
+        for (const stages::Material& m : world.materials)
+            if (m.dispersion > 0.0f) notes.push_back("material '" + m.name + "' disperses light, but tracing in image space bends every colour alike: exact tracing does not");
     bool mirrors = false, casters = false;
     for (const stages::Mesh& mesh : world.meshes) {
         const SurfaceKind kind = world.material_of(mesh).kind;

@@ -49,7 +49,8 @@ stages::Material build_material(const scenes::Material& m, std::vector<std::stri
         notes.push_back("material '" + m.name + "' has an index of refraction below 1: drawn with 1");
         r.ior = 1.0f;
     }
-    if (r.kind == SurfaceKind::Dielectric && m.dispersion > 0.0f) notes.push_back("material '" + m.name + "' disperses light: every colour is bent alike, as its index of refraction says");
+    // KHR_materials_dispersion: blue and red lie (ior - 1) dispersion / 40 above and below, red not below 1.
+    if (r.kind == SurfaceKind::Dielectric && m.has_volume) r.dispersion = (r.ior - 1.0f) * std::min(m.dispersion / 40.0f, 1.0f);
     if (m.has_volume && m.attenuation_distance < std::numeric_limits<float>::infinity()) {
         // Beer's law: the colour is what is left after the distance. No colour is so dark that nothing is.
         constexpr float darkest = 1e-6f;

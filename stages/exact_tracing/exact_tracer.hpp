@@ -18,6 +18,7 @@ struct ExactTracer {
     Partial partial = Partial::NotFollowed;
     bool chance_from_start = false;  // what surfaces after the first do in part is left to chance from the second on
     std::uint64_t seed = 0;
+    int channel = all_channels;  // that is followed alone, with its own index of refraction; else all with green's
     bool light = true;  // else a look: nothing is corrected for, radiance is scaled, and sides of receivers that nobody sees are not there
 
     template <class F>
@@ -52,6 +53,7 @@ struct ExactTracer {
         lit = ray.active = ray.active & (meshes == LaneInt<F>(mesh));
         const vec3<F> position = world.position(hit);
         if (none(lit)) return position;
+        start(ray);
         const SurfaceOptics<F> optics = world.optics_of<F>(meshes, lit);
         // Where it comes from inside, the light stands in what the mesh is made of.
         const vec3<F> plane = world.normals.template load<F>(hit.triangle).triangle;
@@ -74,11 +76,18 @@ struct ExactTracer {
     // A look from its beginning, to what it meets first, and on.
     template <class F>
     void look(Ray<F>& ray, const TriangleHierarchyView::Hit<F>& hit) const {
+        start(ray);
         step(ray, hit, 0);
         follow(ray);
     }
 
 private:
+    template <class F>
+    void start(Ray<F>& ray) const {
+        for (int c = 0; c < 3 && channel != all_channels; ++c)
+            if (c != channel) ray.ledger.started[c] = ray.ledger.carried[c] = F(0.0f);
+    }
+
     // To the surface that was found, and what happens there.
     template <class F>
     void step(Ray<F>& ray, const TriangleHierarchyView::Hit<F>& hit, int event) const {
@@ -166,7 +175,8 @@ private:
 
         const LaneMask<F> transmits = optics.transmits > F(0.0f), thin = transmits & (optics.thin_walled > F(0.0f)), solid = transmits & !thin;
         // Onwards, as far as there is a way: past a plate straight on.
-        const F eta = select(outside | thin, F(1.0f) / optics.ior, optics.ior);
+        const F ior = channel == all_channels ? optics.ior : optics.ior + optics.dispersion * static_cast<float>(channel - 1);
+        const F eta = select(outside | thin, F(1.0f) / ior, ior);
         const Refraction<F> refraction = refract(d, n, eta);
         const F face = fresnel(refraction, eta);
         F reflectance = select(thin, F(1.0f) - thin_plate_transmittance(face), select(solid, face, F(1.0f)));

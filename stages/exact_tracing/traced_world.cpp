@@ -31,7 +31,8 @@ void TracedWorld::fill(Executor& executor, const World& world) {
     for (std::int64_t m = 0; m < optics_.size(); ++m) {
         const Material& material = world.material_of(world.meshes[static_cast<std::size_t>(m)]);
         const auto flag = [](bool set) { return set ? 1.0f : 0.0f; };
-        optics_[m] = {flag(material.kind == SurfaceKind::Lambert), flag(material.two_sided), flag(material.kind == SurfaceKind::Dielectric), flag(material.thin_walled), material.ior, material.base_color,
+        optics_[m] = {flag(material.kind == SurfaceKind::Lambert), flag(material.two_sided), flag(material.kind == SurfaceKind::Dielectric), flag(material.thin_walled), material.ior, material.dispersion,
+                      material.base_color,
                       material.thin_walled ? glm::vec3(0.0f) : material.attenuation};
     }
     const TriangleHierarchyView tree = hierarchy_.view();

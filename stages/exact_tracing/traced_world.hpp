@@ -33,6 +33,7 @@ struct SurfaceOptics {
     F transmits;    // 1: dielectric
     F thin_walled;  // 1
     F ior;
+    F dispersion;   // of blue's index over green's, and of green's over red's
     vec3<F> tint;
     vec3<F> attenuation;  // 1/m
 };

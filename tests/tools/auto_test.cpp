@@ -23,7 +23,7 @@ namespace {
 
 // Errors that a law gives: ratios of the change that fall by half, and a floor.
 ModelRow row(const std::string& scene, double change, double detail, double floor) {
-    ModelRow r{scene, scene + ".0", change, detail, 0.3, false, false, 10, {}, {}, {}};
+    ModelRow r{scene, scene + ".0", change, detail, 0.3, false, 10, {}, {}, {}};
     for (std::size_t k = 0; k < ladder().size(); ++k) {
         r.errors.push_back(k + 1 == ladder().size() ? floor : 1.5 * change * std::pow(0.5, static_cast<double>(k)) + floor);
         r.costs.push_back(50 + 10.0 * std::pow(3.0, static_cast<double>(k)));
@@ -157,21 +157,20 @@ TEST_CASE("what no method draws is refused, whatever else is expected") {
     fog.medium = true;
     const Choice choice = choose_for_error(ErrorModel(lawful_rows()).expect(fog, fog.costs), 10, 10);
     CHECK(choice.step == refuse);
-    CHECK(choice.why == "the scene has a medium or dispersion, which is not drawn");
+    CHECK(choice.why == "the scene has a medium, which is not drawn");
 }
 
 TEST_CASE("a model's data come back as they were, and other data are refused with their line") {
     std::vector<ModelRow> rows = lawful_rows();
-    rows[1].medium = rows[2].dispersion = true;
+    rows[1].medium = true;
     const std::string csv = to_csv(rows);
     const std::vector<ModelRow> back = model_from_csv(csv, "m.csv");
     CHECK(to_csv(back) == csv);
     REQUIRE(back.size() == rows.size());
     CHECK(back[1].medium);
-    CHECK(back[2].dispersion);
     CHECK(back[5].errors[3] == doctest::Approx(rows[5].errors[3]).epsilon(1e-3));
     CHECK(refusal("scene,view\n") == "m.csv: line 1: is not of this program's ladder of settings");
-    CHECK(refusal(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 29");
+    CHECK(refusal(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 28");
     std::string broken = csv;
     CHECK(refusal(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "x")).find("m.csv: line 2: 'x' is no number from 0 on") == 0);
     broken = csv;
@@ -204,12 +203,10 @@ TEST_CASE("a probe tells the same for every number of lanes and threads") {
     }
 }
 
-TEST_CASE("a probe sees media, dispersion, and how much of a picture edges are") {
+TEST_CASE("a probe sees media, and how much of a picture edges are") {
     const Probe plain = probe_of(scenes::bundled_scene("glass-sphere"), 0, 0);
     CHECK_FALSE(plain.medium);
-    CHECK_FALSE(plain.dispersion);
     CHECK(probe_of(scenes::bundled_scene("sphere-in-fog"), 0, 0).medium);
-    CHECK(probe_of(scenes::bundled_scene("prism"), 0, 0).dispersion);
     // A shadow's edge, and a wall without one.
     scenes::Scene bare = scenes::bundled_scene("glass-sphere");
     bare.meshes.erase(bare.meshes.begin() + 1);
@@ -254,7 +251,7 @@ TEST_CASE("auto: what cannot be had is refused with one line, and nothing is wri
         {"pool", "--technique", "auto", "--error", "nan"},
     };
     const std::string starts[] = {
-        "nephroid: --error 0.1: nothing is expected to meet it: the scene has a medium or dispersion, which is not drawn\n",
+        "nephroid: --error 0.1: nothing is expected to meet it: the scene has a medium, which is not drawn\n",
         "nephroid: --error 0.0001: nothing is expected to meet it: the best that can be had is --technique mapping --tracing exact ",
         "nephroid: --budget 0.01: the cheapest setting is expected to take ",
         "nephroid: --error: needs --technique auto\n",

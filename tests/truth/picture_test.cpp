@@ -42,7 +42,7 @@ TEST_CASE("the caustic layer has the tracer's energy, in the tracer's places") {
         const std::string text(c.name);
         CAPTURE(text);
         scenes::Scene scene = scenes::bundled_scene(c.name);
-        // What a later version draws: what media take away, and colours that are bent apart.
+        // What a later version draws: what media take away. Colours that are bent apart are for exact tracing.
         scene.media.clear();
         for (scenes::Material& m : scene.materials) m.dispersion = 0;
         // The whole basin is seen through the water; under it there is something to compare.
@@ -54,6 +54,20 @@ TEST_CASE("the caustic layer has the tracer's energy, in the tracer's places") {
         CHECK(compared.relative_mse < c.relative_mse);
         if (c.beyond) MESSAGE(text, " is beyond the method: ", std::string(c.beyond));
     }
+}
+
+TEST_CASE("a prism's colours lie where the tracer's do") {
+    Device device;
+    scenes::Scene scene = scenes::bundled_scene("prism");
+    stages::Settings settings = small(256, 192, 256, 512, 4);
+    settings.technique = stages::Technique::Hierarchical;
+    settings.tracing = stages::Tracing::Exact;
+    const Comparison compared = compare_with_truth(device, scene, settings, 2'000'000);
+    MESSAGE("energy ", compared.ratio(), " of the tracer's (+- ", compared.true_energy_error / compared.true_energy, "), relMSE ", compared.relative_mse);
+    CHECK(std::abs(compared.ratio() - 1) < 0.005);
+    CHECK(compared.relative_mse < 0.01);
+    for (scenes::Material& m : scene.materials) m.dispersion = 0;
+    CHECK(compare_with_truth(device, scene, settings, 500'000).relative_mse < 0.01);
 }
 
 }  // namespace nephroid::test

@@ -33,7 +33,7 @@ AutoChoice choose_settings(Device& device, const stages::World& world, std::shar
         costs.push_back(expected_cost(found, step.settings));
         steps.push_back(std::move(step));
     }
-    const ModelRow features{"", "", found.change, found.detail, found.caustic_share, found.medium, found.dispersion, found.cost, {}, {}, {}};
+    const ModelRow features{"", "", found.change, found.detail, found.caustic_share, found.medium, found.cost, {}, {}, {}};
     std::vector<Expectation> expected = ErrorModel(model_rows()).expect(features, costs);
     // What a cost is here, by what the probe took.
     const double ms_of_cost = found.milliseconds / found.cost, left = request.budget / ms_of_cost - found.cost;

@@ -54,8 +54,8 @@ std::vector<std::string_view> split(std::string_view text, char at) {
     }
 }
 
-const char* column_names = "scene,view,change,detail,caustic_share,medium,dispersion,probe_cost";
-constexpr std::size_t plain_columns = 8;
+const char* column_names = "scene,view,change,detail,caustic_share,medium,probe_cost";
+constexpr std::size_t plain_columns = 7;
 
 std::string header() {
     std::string text = column_names;
@@ -81,7 +81,7 @@ const std::vector<std::string>& ladder() {
 std::string to_csv(const std::vector<ModelRow>& rows) {
     std::string text = header() + "\n";
     for (const ModelRow& r : rows) {
-        text += r.scene + "," + r.view + printf_text(",%.4g,%.4g,%.4g,%d,%d,%.4g", r.change, r.detail, r.caustic_share, r.medium, r.dispersion, r.probe_cost);
+        text += r.scene + "," + r.view + printf_text(",%.4g,%.4g,%.4g,%d,%.4g", r.change, r.detail, r.caustic_share, r.medium, r.probe_cost);
         for (const std::vector<double>* values : {&r.errors, &r.costs, &r.expected_costs})
             for (const double v : *values) text += printf_text(",%.4g", v);
         text += "\n";
@@ -109,8 +109,8 @@ std::vector<ModelRow> model_from_csv(std::string_view text, const std::string& p
             if (error != std::errc() || end != cells[c].data() + cells[c].size() || !(value >= 0)) throw std::runtime_error(where + "'" + std::string(cells[c]) + "' is no number from 0 on");
             numbers.push_back(value);
         }
-        ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4] != 0, numbers[5], {}, {}, {}};
-        const auto part = [&](std::size_t which) { return std::vector<double>(&numbers[6 + which * steps], &numbers[6 + which * steps] + steps); };
+        ModelRow r{std::string(cells[0]), std::string(cells[1]), numbers[0], numbers[1], numbers[2], numbers[3] != 0, numbers[4], {}, {}, {}};
+        const auto part = [&](std::size_t which) { return std::vector<double>(&numbers[5 + which * steps], &numbers[5 + which * steps] + steps); };
         r.errors = part(0), r.costs = part(1), r.expected_costs = part(2);
         rows.push_back(std::move(r));
     }
@@ -183,7 +183,7 @@ ErrorModel::Terms ErrorModel::fit_floors(const std::vector<const ModelRow*>& row
 ErrorModel::ErrorModel(const std::vector<ModelRow>& rows) {
     std::vector<const ModelRow*> used;
     for (const ModelRow& r : rows)
-        if (!r.medium && !r.dispersion) used.push_back(&r);
+        if (!r.medium) used.push_back(&r);
     if (used.empty()) throw std::runtime_error("the model of errors has no views to go by");
     // Above its floor a view's error is in proportion to its change.
     std::vector<std::vector<double>> of_view(used.size());  // log ratio of each step; NaN: too little is known
@@ -252,7 +252,7 @@ std::vector<Expectation> ErrorModel::expect(const ModelRow& features, const std:
         Expectation e{features.change * exponential(s.log_ratio + s.spread * ratios), std::max(s.spread * ratio_spread, least_spread),
                       exponential(dot(floor_, terms_of(features)) + floors), std::max(floor_spread, least_spread), costs[step]};
         // What is not drawn at all is an error of its own kind.
-        if (features.medium || features.dispersion) e.floor = INFINITY;
+        if (features.medium) e.floor = INFINITY;
         expected.push_back(e);
     }
     return expected;
@@ -300,7 +300,7 @@ Choice choose_for_error(const std::vector<Expectation>& expected, double error, 
     const auto best = std::max_element(worth.begin(), worth.end());
     if (*best < worth_of_refusing || *best == 0) {
         const auto least = std::min_element(expected.begin(), expected.end(), [](const Expectation& a, const Expectation& b) { return a.at(0, 0) < b.at(0, 0); });
-        if (!std::isfinite(least->floor)) return {refuse, "the scene has a medium or dispersion, which is not drawn"};
+        if (!std::isfinite(least->floor)) return {refuse, "the scene has a medium, which is not drawn"};
         return {refuse, "the best that can be had is " + ladder()[static_cast<std::size_t>(least - expected.begin())] + ": " + in_words(*least)};
     }
     const int step = static_cast<int>(best - worth.begin());
@@ -312,7 +312,7 @@ Choice choose_for_budget(const std::vector<Expectation>& expected, double budget
     for (int k = 0; k < static_cast<int>(expected.size()); ++k)
         if (expected[k].cost <= budget && (best == refuse || expected[k].at(0, 0) < expected[best].at(0, 0))) best = k;
     if (best == refuse) return {refuse, ""};
-    return {best, std::isfinite(expected[best].floor) ? in_words(expected[best]) : "the scene has a medium or dispersion, which is not drawn"};
+    return {best, std::isfinite(expected[best].floor) ? in_words(expected[best]) : "the scene has a medium, which is not drawn"};
 }
 
 namespace {

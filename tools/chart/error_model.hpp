@@ -24,7 +24,7 @@ const std::vector<std::string>& ladder();
 struct ModelRow {
     std::string scene, view;
     double change = 0, detail = 0, caustic_share = 0;
-    bool medium = false, dispersion = false;
+    bool medium = false;
     double probe_cost = 0;
     std::vector<double> errors, costs, expected_costs;  // for each of the ladder: relMSE without the truth's noise, cost, and expected_cost()
 };

@@ -101,7 +101,6 @@ Probe probe(Device& device, const stages::World& world, std::shared_ptr<stages::
     for (const auto& [x, y] : {std::pair{1, 0}, {0, 1}}) p.detail += 0.5 * measure(moved(more.picture, x, y), more.picture, nothing).relative_mse;
     p.detail *= static_cast<double>(p.settings.width) / width;
     p.medium = std::any_of(scene.media.begin(), scene.media.end(), [](const scenes::Medium& m) { return m.type != scenes::Medium::Type::None; });
-    p.dispersion = std::any_of(scene.materials.begin(), scene.materials.end(), [](const scenes::Material& m) { return m.kind() == scenes::SurfaceKind::Dielectric && m.dispersion > 0; });
     p.milliseconds = now_ms() - start;
     return p;
 }

@@ -15,7 +15,7 @@ struct Probe {
     // pixel, less in proportion where the frame has more pixels to an edge.
     double detail = 0;
     double caustic_share = 0;  // of the pixels: the caustic is more than half
-    bool medium = false, dispersion = false;  // that are not drawn
+    bool medium = false;  // that is not drawn
     double cost = 0;           // of the pictures, ms, see cost.hpp
     double milliseconds = 0;   // that they took here
     std::vector<RenderedPass> passes;  // of 32^2's picture

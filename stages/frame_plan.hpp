@@ -44,7 +44,7 @@ struct Pass {
     int channel = all_channels;
 };
 
-// Light of one lamp by way of one object and one branch, in exact worlds that disperse it of one channel.
+// Light of one lamp by way of one object and one branch; of one channel where they are followed apart.
 struct CausticMapPlan {
     int light, mesh;
     Branch branch;

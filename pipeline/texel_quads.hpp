@@ -140,6 +140,44 @@ template <int N>
 #endif
     }
 }
+// The eight binary16 from `at` on: four in `a`, the others in `b`.
+[[gnu::always_inline]] inline void load_half_quad_pair(const float* at, FloatLanes<4>& a, FloatLanes<4>& b) {
+    using Quad = FloatLanes<4>::Native;
+#if defined(__F16C__)
+    const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at));
+    a = FloatLanes<4>((Quad)_mm_cvtph_ps(halves));
+    b = FloatLanes<4>((Quad)_mm_cvtph_ps(_mm_unpackhi_epi64(halves, halves)));
+#elif defined(__aarch64__)
+    const uint16x8_t halves = vld1q_u16(reinterpret_cast<const std::uint16_t*>(at));
+    a = FloatLanes<4>((Quad)vcvt_f32_f16(vreinterpret_f16_u16(vget_low_u16(halves))));
+    b = FloatLanes<4>((Quad)vcvt_f32_f16(vreinterpret_f16_u16(vget_high_u16(halves))));
+#elif defined(__SSE4_1__)
+    const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at));
+    // Where there are neither subnormals nor infinities or NaNs, a shifted half is the float times 2^-112.
+    const __m128i magnitude = _mm_and_si128(halves, _mm_set1_epi16(0x7fff));
+    const __m128i special = _mm_cmpgt_epi16(magnitude, _mm_set1_epi16(0x7bff));
+    const __m128i subnormal = _mm_cmpeq_epi16(_mm_subs_epu16(_mm_sub_epi16(magnitude, _mm_set1_epi16(1)), _mm_set1_epi16(0x3fe)), _mm_setzero_si128());
+    const __m128i others = _mm_or_si128(special, subnormal);
+    if (_mm_testz_si128(others, others)) [[likely]] {
+        const auto convert = [](__m128i high) __attribute__((always_inline)) {
+            const __m128i bits = _mm_and_si128(_mm_srai_epi32(high, 3), _mm_set1_epi32(static_cast<int>(0x8fffe000u)));
+            return FloatLanes<4>((Quad)_mm_mul_ps(_mm_castsi128_ps(bits), _mm_set1_ps(0x1p112f)));
+        };
+        a = convert(_mm_unpacklo_epi16(_mm_setzero_si128(), halves));
+        b = convert(_mm_unpackhi_epi16(_mm_setzero_si128(), halves));
+        return;
+    }
+    a = half_to_float(UintLanes<4>((UintLanes<4>::Native)_mm_cvtepu16_epi32(halves)));
+    b = half_to_float(UintLanes<4>((UintLanes<4>::Native)_mm_unpackhi_epi16(halves, _mm_setzero_si128())));
+#else
+    std::uint16_t halves[8];
+    std::memcpy(halves, at, sizeof halves);
+    Quad low, high;
+    for (int k = 0; k < 4; ++k) low[k] = half_to_float(halves[k]), high[k] = half_to_float(halves[k + 4]);
+    a = FloatLanes<4>(low);
+    b = FloatLanes<4>(high);
+#endif
+}
 // The eight binary16 at base[index] of every lane: the first four in `a`, the others in `b`.
 template <int N>
 [[gnu::always_inline]] inline void load_half_quad_pairs(const float* base, IntLanes<N> index, FloatLanes<N> a[4], FloatLanes<N> b[4]) {
@@ -158,35 +196,8 @@ template <int N>
         const __m128i even = load(j), odd = load(j + 4);
         a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm256_cvtph_ps(_mm_unpacklo_epi64(even, odd)));
         b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)_mm256_cvtph_ps(_mm_unpackhi_epi64(even, odd)));
-#elif defined(__aarch64__)
-        const uint16x8_t halves = vld1q_u16(reinterpret_cast<const std::uint16_t*>(at[j]));
-        a[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_low_u16(halves))));
-        b[j] = FloatLanes<N>((typename FloatLanes<N>::Native)vcvt_f32_f16(vreinterpret_f16_u16(vget_high_u16(halves))));
-#elif defined(__SSE4_1__)
-        const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(at[j]));
-        // Where there are neither subnormals nor infinities or NaNs, a shifted half is the float times 2^-112.
-        const __m128i magnitude = _mm_and_si128(halves, _mm_set1_epi16(0x7fff));
-        const __m128i special = _mm_cmpgt_epi16(magnitude, _mm_set1_epi16(0x7bff));
-        const __m128i subnormal = _mm_cmpeq_epi16(_mm_subs_epu16(_mm_sub_epi16(magnitude, _mm_set1_epi16(1)), _mm_set1_epi16(0x3fe)), _mm_setzero_si128());
-        const __m128i others = _mm_or_si128(special, subnormal);
-        if (_mm_testz_si128(others, others)) [[likely]] {
-            const auto convert = [](__m128i high) __attribute__((always_inline)) {
-                const __m128i bits = _mm_and_si128(_mm_srai_epi32(high, 3), _mm_set1_epi32(static_cast<int>(0x8fffe000u)));
-                return FloatLanes<N>((typename FloatLanes<N>::Native)_mm_mul_ps(_mm_castsi128_ps(bits), _mm_set1_ps(0x1p112f)));
-            };
-            a[j] = convert(_mm_unpacklo_epi16(_mm_setzero_si128(), halves));
-            b[j] = convert(_mm_unpackhi_epi16(_mm_setzero_si128(), halves));
-            continue;
-        }
-        a[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_cvtepu16_epi32(halves)));
-        b[j] = half_to_float(UintLanes<N>((typename UintLanes<N>::Native)_mm_unpackhi_epi16(halves, _mm_setzero_si128())));
 #else
-        std::uint16_t halves[8];
-        std::memcpy(halves, at[j], sizeof halves);
-        typename UintLanes<N>::Native low, high;
-        for (int k = 0; k < 4; ++k) low[k] = halves[k], high[k] = halves[k + 4];
-        a[j] = half_to_float(UintLanes<N>(low));
-        b[j] = half_to_float(UintLanes<N>(high));
+        load_half_quad_pair(at[j], a[j], b[j]);
 #endif
     }
 }

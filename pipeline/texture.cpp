@@ -54,9 +54,7 @@ Texture::Texture(const TextureDesc& desc) : desc_(desc), faults_(check(desc)) {
     std::int64_t offset[max_mip_levels] = {}, total = 0;
     for (int l = 0; l < layout.level_count; ++l) {
         TextureLevel& level = layout.level[l];
-        level.width = std::max(1, desc.width >> l);
-        level.height = std::max(1, desc.height >> l);
-        level.slices = desc.kind == TextureKind::Texture3D ? std::max(1, desc.depth >> l) : desc.layers;
+        level.set_size(std::max(1, desc.width >> l), std::max(1, desc.height >> l), desc.kind == TextureKind::Texture3D ? std::max(1, desc.depth >> l) : desc.layers);
         const std::int64_t row = padded_pitch(level.width, texel_bytes), slice = padded_pitch(row * level.height, texel_bytes);
         // Shaders address texels by a 32-bit index, in floats where a texel has four.
         constexpr std::int64_t max_texels = (std::int64_t{1} << 31) / 4;
@@ -97,7 +95,10 @@ const TextureLayout& empty_texture_layout() {
     static const TextureLayout layout = [] {
         TextureLayout l;
         l.level_count = 1;
-        l.level[0] = {zeros, 1, 1, 1, 1, 1};
+        TextureLevel& level = l.level[0];
+        level.data = zeros;
+        level.set_size(1, 1, 1);
+        level.row_pitch = level.slice_pitch = 1;
         return l;
     }();
     return layout;

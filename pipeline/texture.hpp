@@ -30,11 +30,23 @@ struct TextureDesc {
 // One mip level. Texel (x, y) of layer or slice z is at data + ((z * slice_pitch + y * row_pitch + x) * bytes_per_texel);
 // row 0 is the top one. Pitches are in texels and padded where rows would otherwise fall into the same cache sets.
 struct TextureLevel {
+    // A number of texels and the last one's, as filters compute with them.
+    struct Axis {
+        float size = 0.0f, last = 0.0f;
+    };
+
     std::byte* data = nullptr;
     int width = 0, height = 0;
     int slices = 0;  // depth slices or array layers
     int row_pitch = 0;
     int slice_pitch = 0;
+    Axis axis[3];  // width, height, slices
+
+    void set_size(int w, int h, int s) {
+        const auto of = [](int n) { return Axis{static_cast<float>(n), static_cast<float>(n - 1)}; };
+        width = w, height = h, slices = s;
+        axis[0] = of(w), axis[1] = of(h), axis[2] = of(s);
+    }
 };
 
 // Where a texture's texels are. Has a fixed address for as long as the texture lives, moves included.

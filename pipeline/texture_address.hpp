@@ -2,6 +2,7 @@
 #pragma once
 #include "pipeline/lanes.hpp"
 #include "pipeline/sampler.hpp"
+#include "pipeline/texture.hpp"
 
 namespace nephroid {
 
@@ -26,13 +27,29 @@ template <class F>
     return u;
 }
 
+// Where a linear filter reads, counted in texels from the first one's centre.
 template <class F>
-[[gnu::always_inline]] inline LinearTaps<F> linear_taps(AddressMode mode, F u, int size) {
+[[gnu::always_inline]] inline F linear_position(AddressMode mode, F u, const TextureLevel::Axis& axis) {
+    return reduce_coordinate(mode, u) * F(axis.size) - 0.5f;
+}
+// True where both taps lie inside the level, side by side: there no address mode matters.
+template <class F>
+[[gnu::always_inline]] inline auto is_inner(F position, const TextureLevel::Axis& axis) {
+    return (position >= 0.0f) & (position < axis.last);
+}
+template <class F>
+[[gnu::always_inline]] inline LinearTaps<F> inner_taps(F position) {
+    const F i = floor(position);
+    const LaneUint<F> first = as_uint(to_int_in_range(i));
+    return {first, first + 1u, position - i, LaneMask<F>(true), LaneMask<F>(true)};
+}
+template <class F>
+[[gnu::always_inline]] inline LinearTaps<F> linear_taps(AddressMode mode, F position, int size) {
     using I = LaneInt<F>;
     const bool border = mode == AddressMode::Border;
     // One texel beyond the edge (for the border, two) is as far as makes a difference. max() is written so that NaN gives
     // its first argument.
-    F t = max(F(border ? -2.0f : -1.0f), reduce_coordinate(mode, u) * to_float(I(size)) - 0.5f);
+    F t = max(F(border ? -2.0f : -1.0f), position);
     if (mode == AddressMode::Clamp) t = min(t, to_float(I(size - 1)));
     if (border) t = min(t, to_float(I(size)));
     const F i = floor(t);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <type_traits>
 
+#include "pipeline/shared_texels.hpp"
 #include "pipeline/texel_lanes.hpp"
 #include "pipeline/texture.hpp"
 #include "pipeline/texture_address.hpp"
@@ -31,31 +32,43 @@ template <Format format, class F>
 
 inline Neighbours neighbours_along(AddressMode mode) { return mode == AddressMode::Wrap ? Neighbours::Anywhere : Neighbours::Mostly; }
 
-// A slice of a level, filtered along x and y. `slice` is its first word.
-template <Format format, class F>
-[[gnu::always_inline]] inline TexelLanes<format, F> filter_slice(const Sampler& sampler, const TextureLevel& level, LaneUint<F> slice,
-                                                                 const vec2<F>& uv) {
+// A slice of a level, filtered along x and y. `slice` is its first word, one for all lanes or lanes of them.
+template <Format format, class F, class Slice>
+[[gnu::always_inline]] inline vec4<F> filter_slice(const Sampler& sampler, const TextureLevel& level, Slice slice, const vec2<F>& uv) {
     const bool border = sampler.address_u == AddressMode::Border || sampler.address_v == AddressMode::Border;
     const unsigned pitch = static_cast<unsigned>(level.row_pitch) * texel_words<format>;
     if (sampler.filter == Filter::Nearest) {
         const NearestTap<F> x = nearest_tap(sampler.address_u, uv.x, level.width), y = nearest_tap(sampler.address_v, uv.y, level.height);
         const TexelLanes<format, F> texel = load_texels<format, F>(level.data, slice + y.texel * pitch + x.texel * texel_words<format>);
-        return border ? select_texel<format, F>(x.inside & y.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel;
+        return to_rgba(border ? select_texel<format, F>(x.inside & y.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel);
     }
-    const LinearTaps<F> x = linear_taps(sampler.address_u, uv.x, level.width), y = linear_taps(sampler.address_v, uv.y, level.height);
-    const auto rows = [&](const std::byte* second_data, LaneUint<F> second_row, Neighbours neighbours) __attribute__((always_inline)) {
+    const F s = linear_position(sampler.address_u, uv.x, level.axis[0]), t = linear_position(sampler.address_v, uv.y, level.axis[1]);
+    if constexpr (shares_texels<format, F>) {
+        vec4<F> result;
+        if (filter_shared<format, 2>(level, slice, {s, t}, result)) return result;
+    }
+    // The second row is `words` further for all lanes, and at y1.
+    const auto rows = [&](const LinearTaps<F>& x, const LinearTaps<F>& y, unsigned words, LaneUint<F> y1, Neighbours neighbours) __attribute__((always_inline)) {
         const TexelLanes<format, F> first = filter_row<format, F>(sampler, level.data, slice + y.first * pitch, x, neighbours, border, y.first_inside);
-        const TexelLanes<format, F> second = filter_row<format, F>(sampler, second_data, slice + second_row * pitch, x, neighbours, border, y.second_inside);
-        return lerp(first, second, spread_over_channels<format, F>(y.weight));
+        const TexelLanes<format, F> second = filter_row<format, F>(sampler, level.data + words * sizeof(float), slice + y1 * pitch, x, neighbours, border, y.second_inside);
+        return to_rgba(lerp(first, second, spread_over_channels<format, F>(y.weight)));
     };
     // Taking addresses out of lanes is what costs: where the second row is the next one in all of them, the first one's serve.
-    if (all((x.second == x.first + 1u) & (y.second == y.first + 1u))) return rows(level.data + pitch * sizeof(float), y.first, Neighbours::Always);
-    return rows(level.data, y.second, neighbours_along(sampler.address_u));
+    if (all(is_inner(s, level.axis[0]) & is_inner(t, level.axis[1]))) {
+        const LinearTaps<F> x = inner_taps(s), y = inner_taps(t);
+        if constexpr (has_patches<format, F>) {
+            vec4<F> result;
+            if (filter_patch<format>(level, slice, x, y, result)) return result;
+        }
+        return rows(x, y, pitch, y.first, Neighbours::Always);
+    }
+    const LinearTaps<F> x = linear_taps(sampler.address_u, s, level.width), y = linear_taps(sampler.address_v, t, level.height);
+    return rows(x, y, 0, y.second, neighbours_along(sampler.address_u));
 }
 
 // A level of a 3D texture, filtered along x, y and z.
 template <Format format, class F>
-[[gnu::always_inline]] inline TexelLanes<format, F> filter_volume(const Sampler& sampler, const TextureLevel& level, const vec3<F>& uvw) {
+[[gnu::always_inline]] inline vec4<F> filter_volume(const Sampler& sampler, const TextureLevel& level, const vec3<F>& uvw) {
     const bool border = sampler.address_u == AddressMode::Border || sampler.address_v == AddressMode::Border || sampler.address_w == AddressMode::Border;
     const unsigned pitch = static_cast<unsigned>(level.row_pitch) * texel_words<format>;
     const unsigned slice_pitch = static_cast<unsigned>(level.slice_pitch) * texel_words<format>;
@@ -64,24 +77,34 @@ template <Format format, class F>
         const NearestTap<F> z = nearest_tap(sampler.address_w, uvw.z, level.slices);
         const LaneUint<F> word = z.texel * slice_pitch + y.texel * pitch + x.texel * texel_words<format>;
         const TexelLanes<format, F> texel = load_texels<format, F>(level.data, word);
-        return border ? select_texel<format, F>(x.inside & y.inside & z.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel;
+        return to_rgba(border ? select_texel<format, F>(x.inside & y.inside & z.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel);
     }
-    const LinearTaps<F> x = linear_taps(sampler.address_u, uvw.x, level.width), y = linear_taps(sampler.address_v, uvw.y, level.height);
-    const LinearTaps<F> z = linear_taps(sampler.address_w, uvw.z, level.slices);
-    const LaneUint<F> y0 = y.first * pitch, z0 = z.first * slice_pitch;
-    // The row that is the second along y or z or both: `words` further for all lanes, and at y1, z1.
-    const auto rows = [&](unsigned y_words, unsigned z_words, LaneUint<F> y1, LaneUint<F> z1, Neighbours neighbours) __attribute__((always_inline)) {
+    const F r = linear_position(sampler.address_u, uvw.x, level.axis[0]), s = linear_position(sampler.address_v, uvw.y, level.axis[1]);
+    const F t = linear_position(sampler.address_w, uvw.z, level.axis[2]);
+    if constexpr (shares_texels<format, F>) {
+        vec4<F> result;
+        if (filter_shared<format, 3>(level, 0u, {r, s, t}, result)) return result;
+    }
+    // The row that is the second along y or z or both: `y_words` or `z_words` further for all lanes, and at y1, z1.
+    const auto rows = [&](const LinearTaps<F>& x, const LinearTaps<F>& y, const LinearTaps<F>& z, unsigned y_words, unsigned z_words, LaneUint<F> y1, LaneUint<F> z1,
+                          Neighbours neighbours) __attribute__((always_inline)) {
         const auto row = [&](unsigned words, LaneUint<F> word, LaneMask<F> inside) __attribute__((always_inline)) {
             return filter_row<format, F>(sampler, level.data + words * sizeof(float), word, x, neighbours, border, inside);
         };
+        const LaneUint<F> y0 = y.first * pitch, z0 = z.first * slice_pitch;
         const TexelLanes<format, F> y_weight = spread_over_channels<format, F>(y.weight);
         const TexelLanes<format, F> front = lerp(row(0, z0 + y0, z.first_inside & y.first_inside), row(y_words, z0 + y1, z.first_inside & y.second_inside), y_weight);
         const TexelLanes<format, F> back =
             lerp(row(z_words, z1 + y0, z.second_inside & y.first_inside), row(y_words + z_words, z1 + y1, z.second_inside & y.second_inside), y_weight);
-        return lerp(front, back, spread_over_channels<format, F>(z.weight));
+        return to_rgba(lerp(front, back, spread_over_channels<format, F>(z.weight)));
     };
-    if (all((x.second == x.first + 1u) & (y.second == y.first + 1u) & (z.second == z.first + 1u))) return rows(pitch, slice_pitch, y0, z0, Neighbours::Always);
-    return rows(0, 0, y.second * pitch, z.second * slice_pitch, neighbours_along(sampler.address_u));
+    if (all(is_inner(r, level.axis[0]) & is_inner(s, level.axis[1]) & is_inner(t, level.axis[2]))) {
+        const LinearTaps<F> x = inner_taps(r), y = inner_taps(s), z = inner_taps(t);
+        return rows(x, y, z, pitch, slice_pitch, y.first * pitch, z.first * slice_pitch, Neighbours::Always);
+    }
+    const LinearTaps<F> x = linear_taps(sampler.address_u, r, level.width), y = linear_taps(sampler.address_v, s, level.height);
+    const LinearTaps<F> z = linear_taps(sampler.address_w, t, level.slices);
+    return rows(x, y, z, 0, 0, y.second * pitch, z.second * slice_pitch, neighbours_along(sampler.address_u));
 }
 
 // ---- levels
@@ -115,21 +138,23 @@ template <class F, class Level, class Read>
 template <Format format, class F, class Level, class Read>
 [[gnu::always_inline]] inline vec4<F> filter_levels(Filter filter, Level level, int last, const Read& read) {
     if constexpr (std::is_same_v<Level, int> || std::is_same_v<Level, LaneInt<F>>) {
-        return for_each_level<F>(min(max(level, Level(0)), Level(last)), [&](int l) __attribute__((always_inline)) { return to_rgba(read(l)); });
+        return for_each_level<F>(min(max(level, Level(0)), Level(last)), read);
     } else {
         // An F, or one float for all lanes. max() is written so that NaN gives 0.
         const Level clamped = min(max(Level(0.0f), level), Level(static_cast<float>(last)));
         const bool two = filter == Filter::Trilinear;
         const Level low = floor(two ? clamped : clamped + 0.5f);
-        const TexelLanes<format, F> weight = spread_over_channels<format, F>(F(clamped - low));
+        const F weight(clamped - low);
         return for_each_level<F>(to_int_in_range(low), [&](int l) __attribute__((always_inline)) {
             // A loop rather than two calls: what it calls is large, and inlined once.
-            TexelLanes<format, F> result = {};
+            vec4<F> result(F(0.0f));
             for (int k = 0; k < (two ? 2 : 1); ++k) {
-                const TexelLanes<format, F> texel = read(min(l + k, last));
-                result = k == 0 ? texel : lerp(result, texel, weight);
+                const vec4<F> texel = read(min(l + k, last));
+                if (k == 0) result = texel;
+                // What the format lacks stays as it is.
+                else for (int c = 0; c < channel_count(format); ++c) result[c] = result[c] + weight * (texel[c] - result[c]);
             }
-            return to_rgba(result);
+            return result;
         });
     }
 }

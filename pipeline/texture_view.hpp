@@ -69,7 +69,7 @@ public:
     template <class F, class Level = int>
     [[gnu::always_inline]] vec4<F> sample(const Sampler& sampler, const vec2<F>& uv, Level level = 0) const {
         return this->template sample_levels<F>(sampler, level, [&](const TextureLevel& l) __attribute__((always_inline)) {
-            return filter_slice<format, F>(sampler, l, LaneUint<F>(0u), uv);
+            return filter_slice<format, F>(sampler, l, 0u, uv);
         });
     }
     template <class F, class Level = int>

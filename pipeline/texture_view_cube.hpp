@@ -36,7 +36,7 @@ template <Format format, class F>
 
 // A level of a cube map, filtered.
 template <Format format, class F>
-[[gnu::always_inline]] inline TexelLanes<format, F> filter_cube(Filter filter, const TextureLevel& level, const CubeCoordinates<F>& at) {
+[[gnu::always_inline]] inline vec4<F> filter_cube(Filter filter, const TextureLevel& level, const CubeCoordinates<F>& at) {
     using I = LaneInt<F>;
     using U = LaneUint<F>;
     using Texels = TexelLanes<format, F>;
@@ -46,7 +46,7 @@ template <Format format, class F>
     const U slice = as_uint(face) * static_cast<unsigned>(level.slice_pitch);
     if (filter == Filter::Nearest) {
         const U x = nearest_tap(AddressMode::Clamp, at.u, n).texel, y = nearest_tap(AddressMode::Clamp, at.v, n).texel;
-        return load_texels<format, F>(level.data, (slice + y * pitch + x) * texel_words<format>);
+        return to_rgba(load_texels<format, F>(level.data, (slice + y * pitch + x) * texel_words<format>));
     }
     // u and v are in [0, 1], unless a component of the direction is NaN. max() is written so that NaN gives -1.
     const auto position = [&](F u) { return min(max(F(-1.0f), u * to_float(I(n)) - 0.5f), to_float(I(n))); };
@@ -79,7 +79,7 @@ template <Format format, class F>
         d = select_texel<format, F>(right & bottom, mean(all_a, all_c, all_b), all_d);
     }
     const Texels f = spread_over_channels<format, F>(s - column);
-    return lerp(lerp(a, b, f), lerp(c, d, f), spread_over_channels<format, F>(t - row));
+    return to_rgba(lerp(lerp(a, b, f), lerp(c, d, f), spread_over_channels<format, F>(t - row)));
 }
 
 // Sampled by direction, of any length; fetched by texel numbers and face, zeros where there is no such texel. Address modes

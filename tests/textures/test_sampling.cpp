@@ -114,6 +114,55 @@ TEST_CASE("Every kind, format, filter and address mode gives the formula's bits 
     CHECK(batches > 3000);
 }
 
+TEST_CASE("Neighbouring pixels, which read the same texels or texels next to each other") {
+    // Blocks of 4 x 4 pixels, turned at will, that see a texture at many scales: from all lanes between the same texels, over
+    // blocks that an edge between texels runs through, to patches and lanes far apart. Now and then one lane goes astray.
+    Random random(23);
+    const auto uniform = [&](float from, float to) { return std::uniform_real_distribution<float>(from, to)(random); };
+    const float texels_per_pixel[] = {0.0f, 0.01f, 0.06f, 0.2f, 0.4f, 0.5f, 0.7f, 1.0f, 1.4f, 3.0f};
+    int batches = 0;
+    for (const TextureKind kind : kinds)
+        for (const Format format : all_formats) {
+            if (!compiled(kind, format, Read::SampleLevel)) continue;
+            for (const Shape& shape : {Shape{3, 4, 2}, Shape{8, 16, 5}, Shape{33, 9, 3}, Shape{40, 64, 20}}) {
+                Texture t = make_texture(kind, format, shape);
+                REQUIRE(t.faults().empty());
+                fill_random(t, random);
+                for (int modes = 0; modes < 64; modes += 1 + static_cast<int>(random() % 13u))
+                    for (const float scale : texels_per_pixel) {
+                        Batch b(16 * 12);
+                        fill_coordinates(b, t, random);
+                        float at[3] = {}, right[3] = {}, down[3] = {};
+                        int layer = 0;
+                        for (std::size_t i = 0; i < b.u.size(); ++i) {
+                            const std::size_t l = i % 16;
+                            if (l == 0) {
+                                const int size[3] = {t.width(), t.height(), t.slices()};
+                                const float angle = random() % 2u == 0 ? 0.0f : uniform(0.0f, 6.3f), along[3] = {std::cos(angle), std::sin(angle), uniform(-0.5f, 0.5f)};
+                                for (int a = 0; a < 3; ++a) {
+                                    const float texels = static_cast<float>(size[a]);
+                                    at[a] = random() % 4u == 0 ? uniform(-1.0f, 1.0f) / texels : uniform(0.0f, 1.0f);
+                                    right[a] = along[a] * scale / texels;
+                                    down[a] = (a == 2 ? uniform(-0.5f, 0.5f) : a == 1 ? along[0] : -along[1]) * scale / texels;
+                                }
+                                layer = static_cast<int>(random() % static_cast<unsigned>(t.slices()));
+                            }
+                            const bool astray = random() % 64u == 0;
+                            if (astray && random() % 2u == 0) continue;
+                            const float x = static_cast<float>(l % 4), y = static_cast<float>(l / 4);
+                            b.u[i] = at[0] + x * right[0] + y * down[0];
+                            b.v[i] = at[1] + x * right[1] + y * down[1];
+                            b.w[i] = at[2] + x * right[2] + y * down[2];
+                            if (!astray) b.z[i] = layer;
+                        }
+                        check(t, sampler_for(Filter::Bilinear, modes), Read::SampleLevel, b, static_cast<int>(random() % 2u));
+                        ++batches;
+                    }
+            }
+        }
+    CHECK(batches > 1000);
+}
+
 TEST_CASE("Samples are close to the definitions in double") {
     Random random(21);
     long samples = 0;

@@ -37,6 +37,7 @@ template <class F>
 [[gnu::always_inline]] inline auto is_inner(F position, const TextureLevel::Axis& axis) {
     return (position >= 0.0f) & (position < axis.last);
 }
+// The taps where that is so.
 template <class F>
 [[gnu::always_inline]] inline LinearTaps<F> inner_taps(F position) {
     const F i = floor(position);

@@ -57,9 +57,6 @@ private:
     const float* from_;
 };
 
-template <class F>
-[[gnu::always_inline]] inline F lerp(F a, F b, F weight) { return a + weight * (b - a); }
-
 // The texels between which lanes interpolate, the first one at `at`: along x and y, and z if there are three weights. Rows are
 // `row` bytes apart, slices `slice`.
 template <Format format, class F>

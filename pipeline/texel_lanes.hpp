@@ -56,11 +56,13 @@ template <Format format, class F>
     return r;
 }
 
-// a + f * (b - a). `f` comes from spread_over_channels.
+template <class F>
+[[gnu::always_inline]] inline F lerp(F a, F b, F weight) { return a + weight * (b - a); }
+// The same for texels. `f` comes from spread_over_channels.
 template <Format format, class F>
 [[gnu::always_inline]] inline TexelLanes<format, F> lerp(const TexelLanes<format, F>& a, const TexelLanes<format, F>& b, const TexelLanes<format, F>& f) {
     TexelLanes<format, F> r;
-    for (int k = 0; k < r.count; ++k) r.part[k] = a.part[k] + f.part[k] * (b.part[k] - a.part[k]);
+    for (int k = 0; k < r.count; ++k) r.part[k] = lerp(a.part[k], b.part[k], f.part[k]);
     return r;
 }
 template <Format format, class F>

@@ -152,7 +152,7 @@ template <Format format, class F, class Level, class Read>
                 const vec4<F> texel = read(min(l + k, last));
                 if (k == 0) result = texel;
                 // What the format lacks stays as it is.
-                else for (int c = 0; c < channel_count(format); ++c) result[c] = result[c] + weight * (texel[c] - result[c]);
+                else for (int c = 0; c < channel_count(format); ++c) result[c] = lerp(result[c], texel[c], weight);
             }
             return result;
         });

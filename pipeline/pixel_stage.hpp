@@ -24,10 +24,11 @@ inline constexpr int varying_count = 0;
 template <class V> requires(requires { V::varyings; })
 inline constexpr int varying_count<V> = static_cast<int>(std::tuple_size_v<decltype(V::varyings)>);
 
-// Calls f with each varying of the wide struct, that of the narrow one, and the mode as a constant.
+// Calls f with each varying of the wide struct, that of the narrow one, and the mode as a constant. Inlined from the start,
+// since compilers do not move a struct to registers once its address has been passed on.
 template <class VF, class Vf, class Function>
 [[gnu::always_inline]] inline void for_each_varying(const Function& f) {
-    if constexpr (varying_count<VF> > 0) [&]<int... i>(std::integer_sequence<int, i...>) {
+    if constexpr (varying_count<VF> > 0) [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
         (f(std::get<i>(VF::varyings).member, std::get<i>(Vf::varyings).member, std::integral_constant<Interpolation, std::get<i>(VF::varyings).mode>{}), ...);
     }
     (std::make_integer_sequence<int, varying_count<VF>>{});
@@ -59,6 +60,7 @@ template <class F, class VF, class Vf>
         for_each_varying<VF, Vf>([&](auto wide, auto narrow, auto mode) __attribute__((always_inline)) {
             if (mode() == Interpolation::Flat || group.constant) {
                 spread(out.first.*wide, leading.*narrow);
+                if constexpr (mode() != Interpolation::Flat) out.to_second.*wide = out.to_third.*wide = {};  // not read: compilers cannot know
             } else if constexpr (mode() != Interpolation::Flat) {
                 spread(out.first.*wide, a.*narrow);
                 spread(out.to_second.*wide, b.*narrow - a.*narrow);
@@ -68,7 +70,10 @@ template <class F, class VF, class Vf>
     } else {
         const VF leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
         if (group.constant) {
-            for_each_varying<VF, Vf>([&](auto wide, auto, auto) __attribute__((always_inline)) { assign(out.first.*wide, leading.*wide); });
+            for_each_varying<VF, Vf>([&](auto wide, auto, auto mode) __attribute__((always_inline)) {
+                assign(out.first.*wide, leading.*wide);
+                if constexpr (mode() != Interpolation::Flat) out.to_second.*wide = out.to_third.*wide = {};
+            });
             return;
         }
         const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
@@ -96,7 +101,7 @@ template <int L, class T>
 }
 template <class F, class VF, class Vf>
 [[gnu::always_inline]] inline VF interpolate(const CornerValues<VF>& corners, const FragmentGroup<lanes_of<F>>& group) {
-    VF in{};
+    VF in;
     for_each_varying<VF, Vf>([&]([[maybe_unused]] auto wide, auto, auto mode) __attribute__((always_inline)) {
         constexpr bool smooth = mode() == Interpolation::Smooth;
         if (mode() == Interpolation::Flat || group.constant) assign(in.*wide, corners.first.*wide);
@@ -154,7 +159,8 @@ void shade_pixels(const PixelWork& work) {
     using Signature = SignatureOf<PS, F>;
     using In = InputStruct<PS, F>;
     constexpr bool takes_system_input = Signature::template takes<PixelInput<F>>;
-    const PS& shader = *static_cast<const PS*>(work.shader);
+    // A copy, which results cannot overwrite: what it computes from its members alone is then computed once.
+    const PS shader = *static_cast<const PS*>(work.shader);
     FragmentGroup<lanes_of<F>>* groups = static_cast<FragmentGroup<lanes_of<F>>*>(work.groups);
 
     for (int g = 0; g < work.count;) {

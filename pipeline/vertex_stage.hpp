@@ -20,19 +20,17 @@ inline V gather_records(const std::byte* records, LaneInt<typename LaneTypeOf<V>
     using F = typename LaneTypeOf<V>::type;
     constexpr int components = component_count<V>;
     // The members may be integers: they are moved as floats in an array of their own, never through a pointer of another type.
-    F out[components];
+    std::array<F, components> out;
     const float* base = reinterpret_cast<const float*>(records);
     const LaneInt<F> at = index * components;
     if constexpr (components >= 4) {
         int c = 0;
-        for (; c + 4 <= components; c += 4) gather4(base + c, at, out + c);
-        if constexpr (components % 4 != 0) gather4(base + components - 4, at, out + components - 4);  // overlaps, does not overread
+        for (; c + 4 <= components; c += 4) gather4(base + c, at, &out[c]);
+        if constexpr (components % 4 != 0) gather4(base + components - 4, at, &out[components - 4]);  // overlaps, does not overread
     } else {
         for (int c = 0; c < components; ++c) out[c] = gather(base + c, at);
     }
-    V result;
-    std::memcpy(static_cast<void*>(&result), out, sizeof result);
-    return result;
+    return std::bit_cast<V>(out);
 }
 
 // The reverse: lane l's struct goes to records + offset[l] floats.

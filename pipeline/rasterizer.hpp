@@ -22,6 +22,7 @@ class TileRasterizer {
     static constexpr int block_width = lanes == 1 ? 1 : 4, block_height = lanes / block_width;
     // Tiles are looked at in parts of one block per lane first.
     static constexpr int part_width = block_width * block_width, part_height = block_height * block_height;
+    static constexpr int area_width = block_width * part_width, area_height = block_height * part_height;
 
     // A triangle that lies within so many pixels is one whose fragments do not fill groups of their own.
     static constexpr int medium = 64;
@@ -167,12 +168,22 @@ private:
                         lane_x_ * e.step_x + lane_y_ * e.step_y,
                         lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
         }
+        ask_for_vertices(r);
         if (whole_tile) return draw_whole_tile(r);
-        for (int y = top & -part_height; y <= bottom; y += part_height) {
-            for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, edges, x, y);
+        for (int y = top & -area_height; y <= bottom; y += area_height) {
+            for (int x = left & -area_width; x <= right; x += area_width) draw_area(r, edges, x, y, left, top, right, bottom);
         }
         if (pending_ > 0) add_loose_group(r, pending_xy_, mask_bits(first_lanes<F>(pending_)));
         pending_ = 0;
+    }
+
+    // The pixel stage will read them, and some batches' vertices are more than caches hold.
+    void ask_for_vertices(const TriangleRecord& r) const {
+        if (!draw_.vertex_records) return;
+        const std::ptrdiff_t bytes = draw_.raster_layout->bytes;
+        for (const std::uint32_t corner : r.corner) {
+            for (std::ptrdiff_t line = 0; line < bytes; line += 64) __builtin_prefetch(draw_.vertex_records + corner * bytes + line);
+        }
     }
 
     // All that may be drawn of the tile, row after row, as processors like to read.
@@ -192,6 +203,21 @@ private:
         std::int32_t highest, lowest;        // at any of a block's pixels, from its first one's value
         I pixel_step, block_step;            // from a block's first pixel to each of its pixels; from a part's first block to each of its blocks
     };
+
+    // A part per lane: thin triangles touch few of those in their rectangle.
+    void draw_area(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y, int left, int top, int right, int bottom) {
+        const auto at_parts = [&](int k) {  // the highest value at any of a part's pixels
+            const TileEdge& e = edges[k];
+            const std::int32_t highest = std::max(0, e.step_x * (part_width - 1)) + std::max(0, e.step_y * (part_height - 1));
+            return lane_x_ * (e.step_x * part_width) + lane_y_ * (e.step_y * part_height) + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y + highest);
+        };
+        const I part_x = I(x) + lane_x_ * part_width, part_y = I(y) + lane_y_ * part_height;
+        const M reached = (part_x > I(left - part_width)) & (part_x <= I(right)) & (part_y > I(top - part_height)) & (part_y <= I(bottom));
+        for (std::uint32_t parts = mask_bits(((at_parts(0) | at_parts(1) | at_parts(2)) >= I(0)) & reached); parts; parts &= parts - 1) {
+            const int part = __builtin_ctz(parts);
+            draw_part(r, edges, x + part % block_width * part_width, y + part / block_width * part_height);
+        }
+    }
 
     void draw_part(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y) {
         const auto at_blocks = [&](int k) {

@@ -52,6 +52,8 @@ inline IntLanes<16> max(IntLanes<16> a, IntLanes<16> b) { return avx512::i(_mm51
 inline UintLanes<16> min(UintLanes<16> a, UintLanes<16> b) { return avx512::u(_mm512_min_epu32(avx512::si(a), avx512::si(b))); }
 inline UintLanes<16> max(UintLanes<16> a, UintLanes<16> b) { return avx512::u(_mm512_max_epu32(avx512::si(a), avx512::si(b))); }
 inline FloatLanes<16> sqrt(FloatLanes<16> x) { return avx512::f(_mm512_sqrt_ps(avx512::ps(x))); }
+// x * 2^n for an integral n, rounded once (pipeline/math/exponent.hpp).
+inline FloatLanes<16> scale_by_power_of_two(FloatLanes<16> x, FloatLanes<16> n) { return avx512::f(_mm512_scalef_ps(avx512::ps(x), avx512::ps(n))); }
 inline FloatLanes<16> floor(FloatLanes<16> x) { return avx512::f(_mm512_roundscale_ps(avx512::ps(x), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)); }
 inline FloatLanes<16> ceil(FloatLanes<16> x) { return avx512::f(_mm512_roundscale_ps(avx512::ps(x), _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC)); }
 inline FloatLanes<16> trunc(FloatLanes<16> x) { return avx512::f(_mm512_roundscale_ps(avx512::ps(x), _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }

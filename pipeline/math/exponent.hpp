@@ -11,11 +11,16 @@ inline F power_of_two(LaneInt<F> n) {
 }
 
 // x * 2^n for 2^-2 <= |x| <= 2^2 and -252 <= n <= 254, rounded once, overflow and subnormal results included: the factors
-// are the halves of n, and only the second multiplication can leave the normal range.
+// are the halves of n, and only the second multiplication can leave the normal range. Some processors have it as an
+// instruction.
 template <LaneFloat F>
-inline F scale_near_one(F x, LaneInt<F> n) {
-    const LaneInt<F> half = n >> 1;
-    return x * power_of_two<F>(half) * power_of_two<F>(n - half);
+inline F scale_near_one(F x, const RoundedToInt<F>& n) {
+    if constexpr (requires { { scale_by_power_of_two(x, n.value) } -> std::same_as<F>; }) {
+        return scale_by_power_of_two(x, n.value);
+    } else {
+        const LaneInt<F> half = n.integer >> 1;
+        return x * power_of_two<F>(half) * power_of_two<F>(n.integer - half);
+    }
 }
 
 // x * 2^n for every x and n, rounded once.

@@ -18,21 +18,21 @@ inline F exp(F x) {
     const F bounded = min(max(x, -104.0f), 89.0f);
     // exp(x) = 2^k exp(r) with r = x - k ln 2. The first part of ln 2 has so few bits that its product with k is exact; the
     // second part's product is kept apart until the end, so that only one addition rounds on r's scale.
-    const auto [k, exponent] = round_to_int(bounded * 0x1.715476p0f);
-    const F r_hi = bounded - k * 0x1.62e4p-1f;
+    const RoundedToInt<F> n = round_to_int(bounded * 0x1.715476p0f);
+    const F k = n.value, r_hi = bounded - k * 0x1.62e4p-1f;
     const F k_lo = k * 0x1.7f7d1cp-20f;
     const F r = r_hi - k_lo;
     const F tail = r * r * polynomial(r, 0x1.fffffcp-2f, 0x1.555492p-3f, 0x1.5558bp-5f, 0x1.12398ep-7f, 0x1.6a4d74p-10f);
-    return scale_near_one(1.0f + (r_hi + (tail - k_lo)), exponent);
+    return scale_near_one(1.0f + (r_hi + (tail - k_lo)), n);
 }
 
 // About 27 operations.
 template <LaneFloat F>
 inline F exp2(F x) {
     const F bounded = min(max(x, -151.0f), 128.0f);
-    const auto [k, exponent] = round_to_int(bounded);
-    const F f = bounded - k;
-    return scale_near_one(1.0f + (0.5f * f + exp2_tail(f)), exponent);
+    const RoundedToInt<F> k = round_to_int(bounded);
+    const F f = bounded - k.value;
+    return scale_near_one(1.0f + (0.5f * f + exp2_tail(f)), k);
 }
 
 }  // namespace nephroid::lane_math

@@ -64,10 +64,10 @@ inline F pow(F x, F y) {
     const F product_lo = (bounded_y - y_hi) * log2_x.hi + bounded_y * log2_x.lo;
     const auto [t, t_lo] = fast_two_sum(product, product_lo);
     const F bounded_t = min(max(t, -151.0f), 129.0f);
-    const auto [k, exponent] = round_to_int(bounded_t);
+    const RoundedToInt<F> k = round_to_int(bounded_t);
     // The fraction is rounded to F; what that loses counts with 2^f's derivative, for which ln 2 will do.
-    const auto [f, f_lo] = fast_two_sum(bounded_t - k, select(t == bounded_t, t_lo, F(0.0f)));
-    const F result = scale_near_one(1.0f + (0.5f * f + (exp2_tail(f) + f_lo * 0x1.62e43p-1f)), exponent);
+    const auto [f, f_lo] = fast_two_sum(bounded_t - k.value, select(t == bounded_t, t_lo, F(0.0f)));
+    const F result = scale_near_one(1.0f + (0.5f * f + (exp2_tail(f) + f_lo * 0x1.62e43p-1f)), k);
     return any(special) ? pow_special_values(x, y, result) : result;
 }
 

@@ -507,15 +507,16 @@ struct ScatterBeam {
         const auto to_beam = [&](const vec3<F>& v) { return vec3<F>(glm::dot(v, in.tangent), glm::dot(v, in.normal), glm::dot(v, b)); };
         const vec3<F> o = to_beam(to_eye), r = to_beam(direction);
 
-        // Cut the beam's edges with the scan plane that holds the ray, and the triangle they make with the ray.
-        const vec3<F> plane = glm::cross(r, glm::cross(r, vec3<F>(F(0.0f), F(1.0f), F(0.0f)))), across = glm::normalize(glm::cross(r, plane));
+        // Cut the beam's edges with the scan plane that holds the ray, and the triangle they make with the ray. The plane's
+        // normal is r x (r x (0, 1, 0)): a shading language's compiler drops products with zero, C++ may not.
+        const vec3<F> plane(r.y * r.x, -(r.z * r.z + r.x * r.x), r.y * r.z), across = glm::normalize(glm::cross(r, plane));
         const F zero(0.0f), one(1.0f);
         const std::array<vec3<F>, 3> v{vec3<F>(zero), vec3<F>(in.q12.x, zero, in.q12.y), vec3<F>(in.q12.z, zero, in.q12.w)};
         const std::array<vec3<F>, 3> d{vec3<F>(in.e01.x, one, in.e01.y), vec3<F>(in.e01.z, one, in.e01.w), vec3<F>(in.e2_length_radiance.x, one, in.e2_length_radiance.y)};
         std::array<vec2<F>, 3> p;
         for (int i = 0; i < 3; ++i) {
-            const F s = glm::dot(plane, o - v[i]) / glm::dot(plane, d[i]);
-            const vec3<F> w = v[i] + d[i] * s - o;
+            const vec3<F> from_eye = v[i] - o;
+            const vec3<F> w = from_eye - d[i] * (glm::dot(plane, from_eye) / glm::dot(plane, d[i]));
             p[i] = vec2<F>(glm::dot(w, r), glm::dot(w, across));
         }
         F t0(1e30f), t1(-1e30f);
@@ -527,17 +528,17 @@ struct ScatterBeam {
             t1 = select(crosses, max(t1, t), t1);
         }
         // Keep to the slab between the caps, in front of the eye.
-        const F length = in.e2_length_radiance.z, ya = -o.y / r.y, yb = (length - o.y) / r.y;
+        const F length = in.e2_length_radiance.z, slope = F(1.0f) / r.y, ya = -o.y * slope, yb = (length - o.y) * slope;
         t0 = max(max(t0, min(ya, yb)), zero);
         t1 = min(t1, max(ya, yb));
         const F dx = t1 - t0, middle = (t0 + t1) * F(0.5f), y = o.y + middle * r.y;
 
-        const F a0 = abs(in.area.x), a = abs(in.area.x + y * in.area.y + y * y * in.area.z);
+        const F a0 = abs(in.area.x), a = abs(in.area.x + y * (in.area.y + y * in.area.z));
         const F radiance = in.e2_length_radiance.w * a0 / max(a, a0 * F(0.02f));
         const vec3<F> mean = glm::normalize((d[0] + d[1] + d[2]) * F(1.0f / 3.0f));
-        const F h = F(1.0f + g * g) - F(2.0f * g) * glm::dot(-r, mean);
+        const F h = F(1.0f + g * g) + F(2.0f * g) * glm::dot(r, mean);
         const F phase = F(1.0f - g * g) / (F(12.566371f) * h * sqrt(h));
-        const F value = dx * exp(F(-sigma_t) * (middle + y * in.area.w)) * F(sigma_s) * phase * radiance;
+        const F value = dx * F(sigma_s) * phase * radiance * exp(F(-sigma_t) * (middle + y * in.area.w));
         const F lit = select(dx > zero, value, zero);
         return vec4<F>(lit, lit * F(0.85f), lit * F(0.6f), one);
     }

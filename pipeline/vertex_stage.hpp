@@ -2,6 +2,8 @@
 //   in:  vertex and instance ids of a batch's distinct vertices, the vertex buffer
 //   out: clip-space positions and the other system values, one array each; whole vertex structs, one after another
 #pragma once
+#include <array>
+#include <bit>
 #include <cstring>
 
 #include "pipeline/primitive_lanes.hpp"

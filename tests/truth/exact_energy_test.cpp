@@ -2,13 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "scenes/bundled.hpp"
 #include "scenes/gltf.hpp"
-#include "tests/stages/scene_kit.hpp"
+#include "tests/truth/comparison.hpp"
 #include "tools/reference/reference.hpp"
 
 namespace nephroid::test {
@@ -16,12 +15,6 @@ namespace nephroid::test {
 namespace {
 
 double sum(const reference::Rgb& c) { return c.x + c.y + c.z; }
-
-// Fewer photons of the truth's do, unless NEPHROID_TEST_LEVEL=all asks for what takes minutes.
-std::uint32_t photons_of_truth(std::uint32_t many) {
-    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-    return level != nullptr && std::string(level) == "all" ? many : many / 4;
-}
 
 void compare_accounts(Device& device, scenes::Scene scene, std::uint32_t photons) {
     // What a later version draws: what media take away.

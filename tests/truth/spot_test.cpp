@@ -53,7 +53,7 @@ TEST_CASE("the radii that hold 25, 50 and 90 % of the flux, and its centroid, ar
         const Rendered ours = render(device, scene, settings);
         const oracle::Spot spot = oracle::measure_spot(landings(*ours.renderer, c.branch));
         oracle::Options options;
-        options.photons = 3'000'000;
+        options.photons = photons_of_truth(3'000'000);
         options.width = options.height = 1;
         options.spot_mesh = c.receiver;
         const oracle::Result traced = oracle::trace(scene, options);

@@ -170,8 +170,12 @@ private:
         }
         ask_for_vertices(r);
         if (whole_tile) return draw_whole_tile(r);
-        for (int y = top & -area_height; y <= bottom; y += area_height) {
-            for (int x = left & -area_width; x <= right; x += area_width) draw_area(r, edges, x, y, left, top, right, bottom);
+        constexpr int step_x = lanes == 1 ? part_width : area_width, step_y = lanes == 1 ? part_height : area_height;
+        for (int y = top & -step_y; y <= bottom; y += step_y) {
+            for (int x = left & -step_x; x <= right; x += step_x) {
+                if constexpr (lanes == 1) draw_part(r, edges, x, y);
+                else draw_area(r, edges, x, y, left, top, right, bottom);
+            }
         }
         if (pending_ > 0) add_loose_group(r, pending_xy_, mask_bits(first_lanes<F>(pending_)));
         pending_ = 0;

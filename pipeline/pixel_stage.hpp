@@ -60,7 +60,6 @@ template <class F, class VF, class Vf>
         for_each_varying<VF, Vf>([&](auto wide, auto narrow, auto mode) __attribute__((always_inline)) {
             if (mode() == Interpolation::Flat || group.constant) {
                 spread(out.first.*wide, leading.*narrow);
-                if constexpr (mode() != Interpolation::Flat) out.to_second.*wide = out.to_third.*wide = {};  // not read: compilers cannot know
             } else if constexpr (mode() != Interpolation::Flat) {
                 spread(out.first.*wide, a.*narrow);
                 spread(out.to_second.*wide, b.*narrow - a.*narrow);
@@ -70,10 +69,7 @@ template <class F, class VF, class Vf>
     } else {
         const VF leading = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.leading));
         if (group.constant) {
-            for_each_varying<VF, Vf>([&](auto wide, auto, auto mode) __attribute__((always_inline)) {
-                assign(out.first.*wide, leading.*wide);
-                if constexpr (mode() != Interpolation::Flat) out.to_second.*wide = out.to_third.*wide = {};
-            });
+            for_each_varying<VF, Vf>([&](auto wide, auto, auto) __attribute__((always_inline)) { assign(out.first.*wide, leading.*wide); });
             return;
         }
         const VF a = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[0])), b = gather_records<VF>(records, load_lanes<LaneInt<F>>(group.corner[1]));
@@ -166,7 +162,7 @@ void shade_pixels(const PixelWork& work) {
     for (int g = 0; g < work.count;) {
         // Groups of one primitive together: what its vertices alone determine is then computed once for all of them, as far as
         // the shader's call operator is inlined here.
-        CornerValues<std::conditional_t<std::is_void_v<In>, int, VF>> corners;
+        CornerValues<std::conditional_t<std::is_void_v<In>, int, VF>> corners{};
         int end = g + 1;
         if constexpr (!std::is_void_v<In> && varying_count<VF> > 0) {
             while (end < work.count && same_vertices(groups[g], groups[end])) ++end;

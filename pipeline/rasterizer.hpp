@@ -20,7 +20,7 @@ class TileRasterizer {
     using M = LaneMask<F>;
     using Group = FragmentGroup<lanes>;
     static constexpr int block_width = lanes == 1 ? 1 : 4, block_height = lanes / block_width;
-    // Tiles are looked at in parts of one block per lane first.
+    // Tiles are looked at in areas of one part per lane first, then in parts of one block per lane.
     static constexpr int part_width = block_width * block_width, part_height = block_height * block_height;
     static constexpr int area_width = block_width * part_width, area_height = block_height * part_height;
 
@@ -146,7 +146,7 @@ private:
         packed_ = packed;
     }
 
-    // Part by part, a block per lane; then block by block, a pixel per lane.
+    // Area by area, a part per lane; part by part, a block per lane; then block by block, a pixel per lane.
     void draw_large_triangle(const TriangleRecord& r, int left, int top, int right, int bottom) {
         // Edge functions at the tile's first pixel, in whole pixels: adding a multiple of `subpixels` to a value keeps its
         // sign as long as the value is rounded down, so the low bits can go, and what matters within a tile fits 32 bits.
@@ -159,14 +159,18 @@ private:
             // Where the whole tile is inside an edge, an edge of zeros has the same result in 32 bits.
             if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;
             whole_tile = false;
-            const std::int32_t block_across = e.step_x * (block_width - 1), block_down = e.step_y * (block_height - 1);
+            const auto highest = [&](int width, int height) { return std::max(0, e.step_x * (width - 1)) + std::max(0, e.step_y * (height - 1)); };
+            const auto lowest = [&](int width, int height) { return std::min(0, e.step_x * (width - 1)) + std::min(0, e.step_y * (height - 1)); };
+            const auto lane_step = [&](int width, int height) { return lane_x_ * (e.step_x * width) + lane_y_ * (e.step_y * height); };
             edges[k] = {static_cast<std::int32_t>(value),
                         e.step_x,
                         e.step_y,
-                        std::max(0, block_across) + std::max(0, block_down),
-                        std::min(0, block_across) + std::min(0, block_down),
-                        lane_x_ * e.step_x + lane_y_ * e.step_y,
-                        lane_x_ * (e.step_x * block_width) + lane_y_ * (e.step_y * block_height)};
+                        highest(block_width, block_height),
+                        lowest(block_width, block_height),
+                        highest(part_width, part_height),
+                        lane_step(1, 1),
+                        lane_step(block_width, block_height),
+                        lane_step(part_width, part_height)};
         }
         ask_for_vertices(r);
         if (whole_tile) return draw_whole_tile(r);
@@ -203,31 +207,26 @@ private:
     M inside_rectangle(int x, int y) const { return (lane_x_ >= I(left_ - x)) & (lane_x_ <= I(right_ - x)) & (lane_y_ >= I(top_ - y)) & (lane_y_ <= I(bottom_ - y)); }
 
     struct TileEdge {
-        std::int32_t value, step_x, step_y;  // at the tile's first pixel; from pixel to pixel
-        std::int32_t highest, lowest;        // at any of a block's pixels, from its first one's value
-        I pixel_step, block_step;            // from a block's first pixel to each of its pixels; from a part's first block to each of its blocks
+        std::int32_t value, step_x, step_y;    // at the tile's first pixel; from pixel to pixel
+        std::int32_t highest, lowest;          // at any of a block's pixels, from its first one's value
+        std::int32_t part_highest;             // at any of a part's
+        I pixel_step, block_step, part_step;   // from the first pixel of a block, part or area to each of its pixels, blocks or parts
+        std::int32_t at(int x, int y) const { return value + x * step_x + y * step_y; }  // from the tile's first pixel on
     };
 
     // A part per lane: thin triangles touch few of those in their rectangle.
     void draw_area(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y, int left, int top, int right, int bottom) {
-        const auto at_parts = [&](int k) {  // the highest value at any of a part's pixels
-            const TileEdge& e = edges[k];
-            const std::int32_t highest = std::max(0, e.step_x * (part_width - 1)) + std::max(0, e.step_y * (part_height - 1));
-            return lane_x_ * (e.step_x * part_width) + lane_y_ * (e.step_y * part_height) + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y + highest);
-        };
+        const auto highest = [&](int k) { return edges[k].part_step + I(edges[k].at(x - tile_left_, y - tile_top_) + edges[k].part_highest); };
         const I part_x = I(x) + lane_x_ * part_width, part_y = I(y) + lane_y_ * part_height;
         const M reached = (part_x > I(left - part_width)) & (part_x <= I(right)) & (part_y > I(top - part_height)) & (part_y <= I(bottom));
-        for (std::uint32_t parts = mask_bits(((at_parts(0) | at_parts(1) | at_parts(2)) >= I(0)) & reached); parts; parts &= parts - 1) {
+        for (std::uint32_t parts = mask_bits(((highest(0) | highest(1) | highest(2)) >= I(0)) & reached); parts; parts &= parts - 1) {
             const int part = __builtin_ctz(parts);
             draw_part(r, edges, x + part % block_width * part_width, y + part / block_width * part_height);
         }
     }
 
     void draw_part(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y) {
-        const auto at_blocks = [&](int k) {
-            const TileEdge& e = edges[k];
-            return e.block_step + I(e.value + (x - tile_left_) * e.step_x + (y - tile_top_) * e.step_y);
-        };
+        const auto at_blocks = [&](int k) { return edges[k].block_step + I(edges[k].at(x - tile_left_, y - tile_top_)); };
         const I a = at_blocks(0), b = at_blocks(1), c = at_blocks(2);  // at each block's first pixel
         std::uint32_t touched = mask_bits(((a + edges[0].highest) | (b + edges[1].highest) | (c + edges[2].highest)) >= I(0));
         if (!touched) return;

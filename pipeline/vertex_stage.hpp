@@ -2,8 +2,6 @@
 //   in:  vertex and instance ids of a batch's distinct vertices, the vertex buffer
 //   out: clip-space positions and the other system values, one array each; whole vertex structs, one after another
 #pragma once
-#include <array>
-#include <bit>
 #include <cstring>
 
 #include "pipeline/primitive_lanes.hpp"
@@ -22,17 +20,19 @@ inline V gather_records(const std::byte* records, LaneInt<typename LaneTypeOf<V>
     using F = typename LaneTypeOf<V>::type;
     constexpr int components = component_count<V>;
     // The members may be integers: they are moved as floats in an array of their own, never through a pointer of another type.
-    std::array<F, components> out;
+    F out[components];
     const float* base = reinterpret_cast<const float*>(records);
     const LaneInt<F> at = index * components;
     if constexpr (components >= 4) {
         int c = 0;
-        for (; c + 4 <= components; c += 4) gather4(base + c, at, &out[c]);
-        if constexpr (components % 4 != 0) gather4(base + components - 4, at, &out[components - 4]);  // overlaps, does not overread
+        for (; c + 4 <= components; c += 4) gather4(base + c, at, out + c);
+        if constexpr (components % 4 != 0) gather4(base + components - 4, at, out + components - 4);  // overlaps, does not overread
     } else {
         for (int c = 0; c < components; ++c) out[c] = gather(base + c, at);
     }
-    return std::bit_cast<V>(out);
+    V result;
+    std::memcpy(static_cast<void*>(&result), out, sizeof result);
+    return result;
 }
 
 // The reverse: lane l's struct goes to records + offset[l] floats.

@@ -1,5 +1,7 @@
 // Powers of two by way of the exponent's bits.
 #pragma once
+#include <concepts>
+
 #include "pipeline/math/lane_float.hpp"
 
 namespace nephroid::lane_math {

@@ -107,20 +107,14 @@ scenes::Scene room(bool cloud) {
 
 TEST_SUITE_BEGIN("reference");
 
-// True where NEPHROID_TEST_LEVEL=all asks for what takes minutes.
-bool is_patient() {
-    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-    return level != nullptr && std::string(level) == "all";
-}
-
 TEST_CASE("caustics are the oracle's within the noise that both state") {
     const Case cases[] = {
-        {"glass-sphere", scenes::bundled_scene("glass-sphere"), is_patient() ? 1'000'000u : 400'000u},
-        {"glass-torus", scenes::bundled_scene("glass-torus"), is_patient() ? 1'500'000u : 900'000u},
-        {"prism, dispersive", bundled_from("prism", {0.2, 1.6, 0.6}, {0.6, 0, 0}, 1.2), is_patient() ? 400'000u : 200'000u},
+        {"glass-sphere", scenes::bundled_scene("glass-sphere"), 1'000'000},
+        {"glass-torus", scenes::bundled_scene("glass-torus"), 1'500'000},
+        {"prism, dispersive", bundled_from("prism", {0.2, 1.6, 0.6}, {0.6, 0, 0}, 1.2), 400'000},
         {"under water, behind a sphere", bundled_from("sphere-above-water", {0.1, -0.05, 0.2}, {0, -1, 0}, 1.2), 1'500'000},
-        {"reflection on a wall", reflection_on_a_wall(), is_patient() ? 2'000'000u : 800'000u},
-        {"ball in haze", ball_in_haze(), is_patient() ? 1'000'000u : 400'000u},
+        {"reflection on a wall", reflection_on_a_wall(), 2'000'000},
+        {"ball in haze", ball_in_haze(), 1'000'000},
     };
     for (const Case& c : cases) {
         const std::string text(c.name);
@@ -132,6 +126,12 @@ TEST_CASE("caustics are the oracle's within the noise that both state") {
         MESSAGE(text, ": total ", 100 * a.total, " % (+- ", 100 * a.total_error, ", own ", 100 * a.own_error, "), mean squared z ", a.mean_squared_z, " over ", a.pixels, " pixels");
         check(a);
     }
+}
+
+// True where NEPHROID_TEST_LEVEL=all asks for what takes minutes.
+bool is_patient() {
+    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
+    return level != nullptr && std::string(level) == "all";
 }
 
 // In few pixels: a brute-force tracer finds hardly a scattered photon for each of many.

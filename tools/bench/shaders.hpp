@@ -528,7 +528,7 @@ struct ScatterBeam {
             t1 = select(crosses, max(t1, t), t1);
         }
         // Keep to the slab between the caps, in front of the eye.
-        const F length = in.e2_length_radiance.z, slope = F(1.0f) / r.y, ya = -o.y * slope, yb = (length - o.y) * slope;
+        const F length = in.e2_length_radiance.z, inverse = F(1.0f) / r.y, ya = -o.y * inverse, yb = (length - o.y) * inverse;
         t0 = max(max(t0, min(ya, yb)), zero);
         t1 = min(t1, max(ya, yb));
         const F dx = t1 - t0, middle = (t0 + t1) * F(0.5f), y = o.y + middle * r.y;

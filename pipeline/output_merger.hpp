@@ -134,6 +134,7 @@ struct MergeWork {
     int result_stride;
     std::byte* first_row;  // of the target
     std::ptrdiff_t pitch;
+    int top;  // of the tile
 };
 
 // Formats whose texel is as many floats as this, for modes that need no other channel; 0: the others.
@@ -170,18 +171,16 @@ template <Format format, MergeMode mode>
     else store_texel<format>(at, color);
 }
 
-// True if no lane before the last that is drawn is not.
-inline bool without_gaps(std::uint32_t mask) { return (mask & (mask + 1)) == 0; }
-
-template <Format format, MergeMode mode, class Texel>
-[[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, const Texel& texel, const float* colors, std::uint32_t mask) {
+// A group's texels one by one, `offset` bytes from `origin`.
+template <int lanes, Format format, MergeMode mode>
+[[gnu::always_inline]] inline void merge_texels(const ColorTarget& how, std::byte* origin, const std::int32_t* offset, const float* colors, std::uint32_t mask) {
     constexpr int channels = kept_channels<format, mode>;
-    if (without_gaps(mask)) {
-        for (int l = 0, end = __builtin_popcount(mask); l < end; ++l) merge_texel<format, mode>(how, texel(l), colors + channels * l);
+    if (mask == (1u << lanes) - 1u) {
+        for (int l = 0; l < lanes; ++l) merge_texel<format, mode>(how, origin + offset[l], colors + channels * l);
     } else {
         for (; mask; mask &= mask - 1) {
             const int l = __builtin_ctz(mask);
-            merge_texel<format, mode>(how, texel(l), colors + channels * l);
+            merge_texel<format, mode>(how, origin + offset[l], colors + channels * l);
         }
     }
 }
@@ -275,6 +274,7 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
         else store_lanes(colors, color[0]);
     }
     constexpr int span_bytes = 4 * lanes;
+    std::byte* const tile_row = work.first_row + work.top * work.pitch;
     const bool aligned = has_spans && work.pitch % span_bytes == 0 && reinterpret_cast<std::uintptr_t>(work.first_row) % span_bytes == 0;
     for (int g = 0; g < work.count; ++g) {
         const FragmentGroup<lanes>& group = work.groups[g];
@@ -301,7 +301,11 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
                 for (int x = s.left; x < s.left + s.width; ++x, colors += channels) merge_texel<format, mode>(how, row + x * bytes_per_texel(format), colors);
             continue;
         }
-        merge_texels<format, mode>(how, texel, colors, mask);
+        // Within a tile 32 bits are enough.
+        using I = LaneInt<F>;
+        alignas(64) std::int32_t offset[lanes];
+        store_lanes(offset, (load_lanes<I>(group.y) - work.top) * static_cast<int>(work.pitch) + load_lanes<I>(group.x) * bytes_per_texel(format));
+        merge_texels<lanes, format, mode>(how, tile_row, offset, colors, mask);
     }
 }
 
@@ -314,10 +318,10 @@ inline void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& w
     }
 }
 
-// Merges the results of a flush's groups: the late depth test where there was no early one, then every colour.
+// Merges the results of a flush's groups, which lie in the tile whose first row is `top`: the late depth test where there was no early one, then every colour.
 template <class F>
-inline void merge(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>* groups, int count, const float* results, int result_stride,
-                  PipelineStatistics& statistics) {
+inline void merge(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>* groups, int top, int count, const float* results,
+                  int result_stride, PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
     std::uint32_t masks[groups_per_flush<lanes>];
     std::uint64_t fragments = 0;
@@ -338,7 +342,7 @@ inline void merge(const DrawContext& draw, const RasterTarget& target, const Fra
     statistics.samples_passed += fragments;
     for (int t = 0; t < draw.color_count; ++t) {
         const ColorTarget& how = draw.color[t];
-        const MergeWork<lanes> work{groups, masks, count, results + t * 4 * lanes, result_stride, target.color[t], target.color_pitch[t]};
+        const MergeWork<lanes> work{groups, masks, count, results + t * 4 * lanes, result_stride, target.color[t], target.color_pitch[t], top};
         switch (how.format) {
             case Format::R32F: merge_groups<F, Format::R32F>(how, work); break;
             case Format::RG32F: merge_groups<F, Format::RG32F>(how, work); break;

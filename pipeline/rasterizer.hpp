@@ -10,6 +10,7 @@
 
 #include "pipeline/edges.hpp"
 #include "pipeline/output_merger.hpp"
+#include "pipeline/triangle_rows.hpp"
 
 namespace nephroid {
 
@@ -27,6 +28,10 @@ class TileRasterizer {
     // A triangle that lies within so many pixels is one whose fragments do not fill groups of their own.
     static constexpr int medium = 64;
     static constexpr std::uint32_t all_lanes_ = (1u << lanes) - 1u;
+    // Room for pixels that wait, which are read once they are long in memory: what close_pending leaves, a part, and a register.
+    static constexpr int pending_capacity = 256 + lanes + part_width * part_height + lanes;
+    // A triangle that shows no more than this of any row, of as many as there are lanes, is thin there.
+    static constexpr int thin = 12;
     // A point that lies within so many columns and rows is drawn row after row, a wider one in blocks.
     static constexpr int narrow = 16;
     static_assert(narrow * narrow <= fragments_per_flush);
@@ -99,11 +104,13 @@ private:
         if (left > right || top > bottom) return;
         if (r.small) {
             const bool whole = left == r.left && top == r.top && right == r.right && bottom == r.bottom;
-            if (lanes == 16 && whole) {
+            if (lanes > 1 && whole) {
                 // A pixel per lane of the four rows of four.
-                store_lanes(packed_record_ + packed_, I(static_cast<std::int32_t>(record)));
-                packed_ += compress_lanes(packed_xy_ + packed_, lane_xy_ + ((r.top << 16) + r.left), r.coverage);
-                if (packed_ >= lanes) close_packed();
+                for (int k = 0; k < 16; k += lanes) {
+                    store_lanes(packed_record_ + packed_, I(static_cast<std::int32_t>(record)));
+                    packed_ += compress_lanes(packed_xy_ + packed_, lane_xy_ + (((r.top + k / 4) << 16) + r.left), r.coverage >> k & all_lanes_);
+                    if (packed_ >= lanes) close_packed();
+                }
                 return;
             }
             for (std::uint32_t bits = r.coverage; bits; bits &= bits - 1) {
@@ -146,7 +153,6 @@ private:
         packed_ = packed;
     }
 
-    // Area by area, a part per lane; part by part, a block per lane; then block by block, a pixel per lane.
     void draw_large_triangle(const TriangleRecord& r, int left, int top, int right, int bottom) {
         // Edge functions at the tile's first pixel, in whole pixels: adding a multiple of `subpixels` to a value keeps its
         // sign as long as the value is rounded down, so the low bits can go, and what matters within a tile fits 32 bits.
@@ -159,30 +165,12 @@ private:
             // Where the whole tile is inside an edge, an edge of zeros has the same result in 32 bits.
             if (value + std::min<std::int64_t>(0, across) + std::min<std::int64_t>(0, down) >= 0) continue;
             whole_tile = false;
-            const auto highest = [&](int width, int height) { return std::max(0, e.step_x * (width - 1)) + std::max(0, e.step_y * (height - 1)); };
-            const auto lowest = [&](int width, int height) { return std::min(0, e.step_x * (width - 1)) + std::min(0, e.step_y * (height - 1)); };
-            const auto lane_step = [&](int width, int height) { return lane_x_ * (e.step_x * width) + lane_y_ * (e.step_y * height); };
-            edges[k] = {static_cast<std::int32_t>(value),
-                        e.step_x,
-                        e.step_y,
-                        highest(block_width, block_height),
-                        lowest(block_width, block_height),
-                        highest(part_width, part_height),
-                        lane_step(1, 1),
-                        lane_step(block_width, block_height),
-                        lane_step(part_width, part_height)};
+            edges[k] = {static_cast<std::int32_t>(value), e.step_x, e.step_y};
         }
         ask_for_vertices(r);
-        if (whole_tile) return draw_whole_tile(r);
-        constexpr int step_x = lanes == 1 ? part_width : area_width, step_y = lanes == 1 ? part_height : area_height;
-        for (int y = top & -step_y; y <= bottom; y += step_y) {
-            for (int x = left & -step_x; x <= right; x += step_x) {
-                if constexpr (lanes == 1) draw_part(r, edges, x, y);
-                else draw_area(r, edges, x, y, left, top, right, bottom);
-            }
-        }
-        if (pending_ > 0) add_loose_group(r, pending_xy_, mask_bits(first_lanes<F>(pending_)));
-        pending_ = 0;
+        if (whole_tile) draw_whole_tile(r);
+        else if (draw_.early_depth) draw_areas(r, edges, left, top, right, bottom);
+        else draw_bands(r, edges, left, top, right, bottom);
     }
 
     // The pixel stage will read them, and some batches' vertices are more than caches hold.
@@ -206,17 +194,102 @@ private:
     // A block's pixels that may be drawn.
     M inside_rectangle(int x, int y) const { return (lane_x_ >= I(left_ - x)) & (lane_x_ <= I(right_ - x)) & (lane_y_ >= I(top_ - y)) & (lane_y_ <= I(bottom_ - y)); }
 
-    struct TileEdge {
-        std::int32_t value, step_x, step_y;    // at the tile's first pixel; from pixel to pixel
+    // Bands of a row per lane. Where a triangle is thin it covers most blocks that it touches in part: there nothing but its own
+    // pixels is looked at, the first of all rows, the second of all rows, and so on.
+    void draw_bands(const TriangleRecord& r, const TileEdge (&edges)[3], int left, int top, int right, int bottom) {
+        const TriangleRows<F> triangle(edges, tile_size);
+        BlockEdge block_edges[3];
+        bool has_block_edges = false;
+        for (int y = top & -lanes; y <= bottom; y += lanes) {
+            const I row = I(y) + lane_index<F>();
+            const typename TriangleRows<F>::Columns columns = triangle.columns(row - tile_top_, left - tile_left_, right - tile_left_);
+            const I count = select((row >= I(top)) & (row <= I(bottom)), columns.last - columns.first + 1, I(0));
+            if (lanes == 1 || none(count > thin)) {
+                add_thin(r, columns.first + tile_left_ + (row << 16), count);
+                continue;
+            }
+            if (!has_block_edges) make_block_edges(edges, block_edges);
+            has_block_edges = true;
+            for (int part_y = std::max(y, top & -part_height); part_y <= std::min(y + lanes - 1, bottom); part_y += part_height)
+                for (int x = left & -part_width; x <= right; x += part_width) draw_part(r, block_edges, x, part_y);
+        }
+        close_pending(r, true);
+    }
+
+    // So many pixels of each lane's row, from the one at `xy` on.
+    void add_thin(const TriangleRecord& r, I xy, I count) {
+        int pending = pending_;  // not in memory, where the next ones would wait for it
+        for (std::uint32_t rows = mask_bits(count > 0); rows; rows = mask_bits(count > 0)) {
+            pending += compress_lanes(pending_xy_ + pending, xy, rows);
+            if (pending >= 256) {
+                pending_ = pending;
+                close_pending(r, false);
+                pending = pending_;
+            }
+            xy = xy + 1;
+            count = count - 1;
+        }
+        pending_ = pending;
+    }
+
+    // Makes groups of the pixels that wait, of the last few too if there will be no more.
+    void close_pending(const TriangleRecord& r, bool last) {
+        int first = 0;
+        for (; pending_ - first >= lanes; first += lanes) add_loose_group(r, load_lanes<I>(pending_xy_ + first), all_lanes_);
+        pending_ -= first;
+        if (pending_ > 0 && last) {
+            // Idle lanes stand on the first one's pixel.
+            const M used = first_lanes<F>(pending_);
+            add_loose_group(r, select(used, load_lanes<I>(pending_xy_ + first), I(pending_xy_[first])), mask_bits(used));
+            pending_ = 0;
+        } else if (first > 0) {
+            store_lanes(pending_xy_, load_lanes<I>(pending_xy_ + first));
+        }
+    }
+    void add_loose_group(const TriangleRecord& r, I xy, std::uint32_t mask) {
+        groups_[count_].layout = GroupLayout::Loose;
+        add_triangle_group(r, xy & 0xffff, xy >> 16, mask);
+    }
+
+    struct BlockEdge {
+        TileEdge edge;
         std::int32_t highest, lowest;          // at any of a block's pixels, from its first one's value
         std::int32_t part_highest;             // at any of a part's
         I pixel_step, block_step, part_step;   // from the first pixel of a block, part or area to each of its pixels, blocks or parts
-        std::int32_t at(int x, int y) const { return value + x * step_x + y * step_y; }  // from the tile's first pixel on
     };
 
+    void make_block_edges(const TileEdge (&edges)[3], BlockEdge (&out)[3]) const {
+        for (int k = 0; k < 3; ++k) {
+            const TileEdge& e = edges[k];
+            const auto highest = [&](int width, int height) { return std::max(0, e.step_x * (width - 1)) + std::max(0, e.step_y * (height - 1)); };
+            const auto lowest = [&](int width, int height) { return std::min(0, e.step_x * (width - 1)) + std::min(0, e.step_y * (height - 1)); };
+            const auto lane_step = [&](int width, int height) { return lane_x_ * (e.step_x * width) + lane_y_ * (e.step_y * height); };
+            out[k] = {e,
+                      highest(block_width, block_height),
+                      lowest(block_width, block_height),
+                      highest(part_width, part_height),
+                      lane_step(1, 1),
+                      lane_step(block_width, block_height),
+                      lane_step(part_width, part_height)};
+        }
+    }
+
+    // Area by area, a part per lane; part by part, a block per lane; then block by block, a pixel per lane.
+    void draw_areas(const TriangleRecord& r, const TileEdge (&edges)[3], int left, int top, int right, int bottom) {
+        BlockEdge block_edges[3];
+        make_block_edges(edges, block_edges);
+        constexpr int step_x = lanes == 1 ? part_width : area_width, step_y = lanes == 1 ? part_height : area_height;
+        for (int y = top & -step_y; y <= bottom; y += step_y) {
+            for (int x = left & -step_x; x <= right; x += step_x) {
+                if constexpr (lanes == 1) draw_part(r, block_edges, x, y);
+                else draw_area(r, block_edges, x, y, left, top, right, bottom);
+            }
+        }
+    }
+
     // A part per lane: thin triangles touch few of those in their rectangle.
-    void draw_area(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y, int left, int top, int right, int bottom) {
-        const auto highest = [&](int k) { return edges[k].part_step + I(edges[k].at(x - tile_left_, y - tile_top_) + edges[k].part_highest); };
+    void draw_area(const TriangleRecord& r, const BlockEdge (&edges)[3], int x, int y, int left, int top, int right, int bottom) {
+        const auto highest = [&](int k) { return edges[k].part_step + I(edges[k].edge.at(x - tile_left_, y - tile_top_) + edges[k].part_highest); };
         const I part_x = I(x) + lane_x_ * part_width, part_y = I(y) + lane_y_ * part_height;
         const M reached = (part_x > I(left - part_width)) & (part_x <= I(right)) & (part_y > I(top - part_height)) & (part_y <= I(bottom));
         for (std::uint32_t parts = mask_bits(((highest(0) | highest(1) | highest(2)) >= I(0)) & reached); parts; parts &= parts - 1) {
@@ -225,8 +298,8 @@ private:
         }
     }
 
-    void draw_part(const TriangleRecord& r, const TileEdge (&edges)[3], int x, int y) {
-        const auto at_blocks = [&](int k) { return edges[k].block_step + I(edges[k].at(x - tile_left_, y - tile_top_)); };
+    void draw_part(const TriangleRecord& r, const BlockEdge (&edges)[3], int x, int y) {
+        const auto at_blocks = [&](int k) { return edges[k].block_step + I(edges[k].edge.at(x - tile_left_, y - tile_top_)); };
         const I a = at_blocks(0), b = at_blocks(1), c = at_blocks(2);  // at each block's first pixel
         std::uint32_t touched = mask_bits(((a + edges[0].highest) | (b + edges[1].highest) | (c + edges[2].highest)) >= I(0));
         if (!touched) return;
@@ -259,13 +332,13 @@ private:
             }
             return;
         }
-        int pending = pending_;  // not in memory, where the next block would wait for it
+        int pending = pending_;
         for (; partial; partial &= partial - 1) {
             const int block = __builtin_ctz(partial);
             pending += compress_lanes(pending_xy_ + pending, lane_xy_ + ((block_y(block) << 16) + block_x(block)), inside_block(block));
         }
         pending_ = pending;
-        close_pending(r);
+        if (pending_ >= 256) close_pending(r, false);
     }
 
     // A block of one triangle, in rows of four.
@@ -273,21 +346,6 @@ private:
         Group& g = groups_[count_];
         g.layout = whole_rows(x, y) ? GroupLayout::RowsOfFour : GroupLayout::Loose;
         add_triangle_group(r, I(x) + lane_x_, I(y) + lane_y_, mask);
-    }
-
-    // Fragments of blocks that a triangle covers in part wait in pending_xy_ until they fill groups.
-    void close_pending(const TriangleRecord& r) {
-        if (pending_ < lanes) return;
-        int first = 0;
-        for (; pending_ >= lanes; first += lanes, pending_ -= lanes) add_loose_group(r, pending_xy_ + first, all_lanes_);
-        store_lanes(pending_xy_, load_lanes<I>(pending_xy_ + first));
-    }
-    void add_loose_group(const TriangleRecord& r, const std::int32_t* xy, std::uint32_t mask) {
-        Group& g = groups_[count_];
-        g.layout = GroupLayout::Loose;
-        // Idle lanes stand on the first one's pixel.
-        const I at = select(mask_from_bits<F>(mask), load_lanes<I>(xy), I(xy[0]));
-        add_triangle_group(r, at & 0xffff, at >> 16, mask);
     }
 
     void add_triangle_group(const TriangleRecord& r, I px, I py, std::uint32_t mask) {
@@ -597,7 +655,7 @@ private:
         } else {
             shade(0, count_);
         }
-        merge<F>(draw_, target_, groups_, count_, scratch_.results, result_stride_, scratch_.statistics);
+        merge<F>(draw_, target_, groups_, tile_top_, count_, scratch_.results, result_stride_, scratch_.statistics);
         count_ = 0;
     }
     // Asks for the texels that will be written, so that they come while the groups are shaded.
@@ -648,10 +706,9 @@ private:
     I dense_x_, dense_y_;
     // Fragments of small primitives that wait for a group: x in the low half and y in the high one; whose they are.
     alignas(64) std::int32_t packed_xy_[3 * lanes], packed_record_[3 * lanes];
-    // Pixels of the current triangle that wait for a group, x in the low half and y in the high one: less than a group's
-    // and a part's, and a register to spare.
+    // Pixels of the current triangle that wait for groups, x in the low half and y in the high one.
     int pending_ = 0;
-    alignas(64) std::int32_t pending_xy_[lanes + part_width * part_height + lanes];
+    alignas(64) std::int32_t pending_xy_[pending_capacity];
 };
 
 template <class F>

@@ -4,7 +4,6 @@
 #pragma once
 #include <algorithm>
 #include <bit>
-#include <type_traits>
 
 #include "pipeline/texel.hpp"
 #include "pipeline/texel_lanes.hpp"
@@ -77,39 +76,24 @@ template <Format format, class F>
     return r;
 }
 
-// Filters along `axes` axes if all lanes read the same texels, or some of them one lane's and all others another's; returns
-// false where there are more, or an address mode has a say. `position` is linear_position()'s, `slice` a slice's first word.
-template <Format format, int axes, class F, class Slice>
-[[gnu::always_inline]] inline bool filter_shared(const TextureLevel& level, Slice slice, const F (&position)[axes], vec4<F>& result) {
-    F corner[axes], weight[axes];
-    for (int a = 0; a < axes; ++a) corner[a] = floor(position[a]), weight[a] = position[a] - corner[a];
-    const auto lanes_like = [&](int l) __attribute__((always_inline)) {
-        LaneMask<F> same = corner[0] == F(lane(corner[0], l));
-        for (int a = 1; a < axes; ++a) same &= corner[a] == F(lane(corner[a], l));
-        if constexpr (!std::is_same_v<Slice, unsigned>) same &= slice == Slice(lane(slice, l));
-        return same;
+// Filters along as many axes as there are weights if all lanes read the same texels, or some of them one lane's and all others
+// another's; returns false where there are more. `word` is where a lane's first texel begins; all its texels lie inside the level.
+template <Format format, int axes, class F>
+[[gnu::always_inline]] inline bool filter_shared(const TextureLevel& level, LaneUint<F> word, const F (&weight)[axes], vec4<F>& result) {
+    const std::size_t row = static_cast<std::size_t>(level.row_pitch) * bytes_per_texel(format), slice = static_cast<std::size_t>(level.slice_pitch) * bytes_per_texel(format);
+    const auto filter_at = [&](unsigned first_word) __attribute__((always_inline)) {
+        return filter_cell<format>(level.data + std::size_t{first_word} * sizeof(float), row, slice, weight);
     };
-    const auto filter_like = [&](int l, vec4<F>& filtered) __attribute__((always_inline)) {
-        const std::size_t pitch[3] = {bytes_per_texel(format), static_cast<std::size_t>(level.row_pitch) * bytes_per_texel(format),
-                                      static_cast<std::size_t>(level.slice_pitch) * bytes_per_texel(format)};
-        std::size_t offset = number_of(slice, l) * sizeof(float);
-        bool inner = true;
-        for (int a = 0; a < axes; ++a) {
-            const float c = lane(corner[a], l);
-            const bool inside = is_inner(c, level.axis[a]);
-            inner &= inside;
-            offset += static_cast<unsigned>(to_int_in_range(inside ? c : 0.0f)) * pitch[a];
-        }
-        if (!inner) return false;
-        filtered = filter_cell<format>(level.data + offset, pitch[1], pitch[2], weight);
+    const unsigned ours = lane(word, 0);
+    const LaneMask<F> like_ours = word == ours;
+    if (all(like_ours)) {
+        result = filter_at(ours);
         return true;
-    };
-    const LaneMask<F> first = lanes_like(0);
-    if (all(first)) return filter_like(0, result);
-    const int other = std::countr_zero(~mask_bits(first));
-    vec4<F> theirs;
-    if (!all(first | lanes_like(other)) || !filter_like(0, result) || !filter_like(other, theirs)) return false;
-    result = select(first, result, theirs);
+    }
+    const unsigned theirs = lane(word, std::countr_zero(~mask_bits(like_ours)));
+    if (!all(like_ours | (word == theirs))) return false;
+    result = filter_at(ours);
+    result = select(like_ours, result, filter_at(theirs));
     return true;
 }
 

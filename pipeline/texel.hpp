@@ -24,10 +24,7 @@ typedef float Color4 __attribute__((vector_size(16)));
 typedef std::int32_t Color4Mask __attribute__((vector_size(16)));
 
 inline Color4 splat4(float v) { return Color4{v, v, v, v}; }
-inline Color4 canonical(Color4 v) {
-    const Color4Mask number = v == v;
-    return (Color4)(((Color4Mask)v & number) | ((Color4Mask)splat4(canonical_nan) & ~number));
-}
+inline Color4 canonical(Color4 v) { return v == v ? v : splat4(canonical_nan); }
 inline float canonical(float v) { return v != v ? canonical_nan : v; }
 
 // Direct3D's rule: scaled, then rounded; the scaled value is a float, as it is in every renderer that is compared with.

@@ -43,10 +43,6 @@ template <Format format, class F, class Slice>
         return to_rgba(border ? select_texel<format, F>(x.inside & y.inside, texel, broadcast_texel<format, F>(sampler.border)) : texel);
     }
     const F s = linear_position(sampler.address_u, uv.x, level.axis[0]), t = linear_position(sampler.address_v, uv.y, level.axis[1]);
-    if constexpr (shares_texels<format, F>) {
-        vec4<F> result;
-        if (filter_shared<format, 2>(level, slice, {s, t}, result)) return result;
-    }
     // The second row is `words` further for all lanes, and at y1.
     const auto rows = [&](const LinearTaps<F>& x, const LinearTaps<F>& y, unsigned words, LaneUint<F> y1, Neighbours neighbours) __attribute__((always_inline)) {
         const TexelLanes<format, F> first = filter_row<format, F>(sampler, level.data, slice + y.first * pitch, x, neighbours, border, y.first_inside);
@@ -56,10 +52,11 @@ template <Format format, class F, class Slice>
     // Taking addresses out of lanes is what costs: where the second row is the next one in all of them, the first one's serve.
     if (all(is_inner(s, level.axis[0]) & is_inner(t, level.axis[1]))) {
         const LinearTaps<F> x = inner_taps(s), y = inner_taps(t);
-        if constexpr (has_patches<format, F>) {
-            vec4<F> result;
+        [[maybe_unused]] vec4<F> result;
+        if constexpr (shares_texels<format, F>)
+            if (filter_shared<format>(level, slice + y.first * pitch + x.first * texel_words<format>, {x.weight, y.weight}, result)) return result;
+        if constexpr (has_patches<format, F>)
             if (filter_patch<format>(level, slice, x, y, result)) return result;
-        }
         return rows(x, y, pitch, y.first, Neighbours::Always);
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, s, level.width), y = linear_taps(sampler.address_v, t, level.height);
@@ -81,10 +78,6 @@ template <Format format, class F>
     }
     const F r = linear_position(sampler.address_u, uvw.x, level.axis[0]), s = linear_position(sampler.address_v, uvw.y, level.axis[1]);
     const F t = linear_position(sampler.address_w, uvw.z, level.axis[2]);
-    if constexpr (shares_texels<format, F>) {
-        vec4<F> result;
-        if (filter_shared<format, 3>(level, 0u, {r, s, t}, result)) return result;
-    }
     // The row that is the second along y or z or both: `y_words` or `z_words` further for all lanes, and at y1, z1.
     const auto rows = [&](const LinearTaps<F>& x, const LinearTaps<F>& y, const LinearTaps<F>& z, unsigned y_words, unsigned z_words, LaneUint<F> y1, LaneUint<F> z1,
                           Neighbours neighbours) __attribute__((always_inline)) {
@@ -100,6 +93,9 @@ template <Format format, class F>
     };
     if (all(is_inner(r, level.axis[0]) & is_inner(s, level.axis[1]) & is_inner(t, level.axis[2]))) {
         const LinearTaps<F> x = inner_taps(r), y = inner_taps(s), z = inner_taps(t);
+        [[maybe_unused]] vec4<F> result;
+        if constexpr (shares_texels<format, F>)
+            if (filter_shared<format>(level, z.first * slice_pitch + y.first * pitch + x.first * texel_words<format>, {x.weight, y.weight, z.weight}, result)) return result;
         return rows(x, y, z, pitch, slice_pitch, y.first * pitch, z.first * slice_pitch, Neighbours::Always);
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, r, level.width), y = linear_taps(sampler.address_v, s, level.height);
@@ -161,24 +157,48 @@ template <Format format, class F, class Level, class Read>
 
 // ---- fetches
 
-// A texel by its numbers; zeros where there is none, missing channels included.
-template <Format format, class F, class Level>
-[[gnu::always_inline]] inline vec4<F> fetch_texel(const TextureLayout& layout, LaneInt<F> x, LaneInt<F> y, LaneInt<F> slice, Level level) {
+// A texel by its numbers; zeros where there is none, missing channels included. The slice is an int for all lanes, or lanes.
+template <Format format, class F, class Slice, class Level>
+[[gnu::always_inline]] inline vec4<F> fetch_texel(const TextureLayout& layout, LaneInt<F> x, LaneInt<F> y, Slice slice, Level level) {
     using U = LaneUint<F>;
     return for_each_level<F>(level, [&](int l) __attribute__((always_inline)) {
-        // Numbers are compared as unsigned ones: what is below 0 then lies above every size. A level that is not there is
-        // one of width 0.
-        const bool exists = l >= 0 && l < layout.level_count;
+        // Numbers are compared as unsigned ones: what is below 0 then lies above every size. A level or slice that is not
+        // there is one of width 0.
+        bool exists = l >= 0 && l < layout.level_count;
         const TextureLevel& from = layout.level[exists ? l : 0];
-        const U column = as_uint(x), row = as_uint(y), plane = as_uint(slice);
-        const U width(exists ? static_cast<unsigned>(from.width) : 0u), height(static_cast<unsigned>(from.height)), planes(static_cast<unsigned>(from.slices));
-        const LaneMask<F> inside = (column < width) & (row < height) & (plane < planes);
-        const U number = plane * static_cast<unsigned>(from.slice_pitch) + row * static_cast<unsigned>(from.row_pitch) + column;
+        if constexpr (std::is_same_v<Slice, int>) exists = exists && slice >= 0 && slice < from.slices;
+        const U column = as_uint(x), row = as_uint(y);
+        const U width(exists ? static_cast<unsigned>(from.width) : 0u), height(static_cast<unsigned>(from.height));
+        LaneMask<F> inside = (column < width) & (row < height);
+        U number = row * static_cast<unsigned>(from.row_pitch) + column;
+        if constexpr (std::is_same_v<Slice, int>) {
+            number = number + static_cast<unsigned>(slice) * static_cast<unsigned>(from.slice_pitch);
+        } else {
+            inside = inside & (as_uint(slice) < U(static_cast<unsigned>(from.slices)));
+            number = number + as_uint(slice) * static_cast<unsigned>(from.slice_pitch);
+        }
         if constexpr (format == Format::RGBA32F && lanes_of<F> >= 4)
             if (all(inside & in_rows_of_four(number))) return to_rgba(load_texel_rows<format, F>(from.data, number, from.row_pitch));
         const TexelLanes<format, F> texel = load_texels<format, F>(from.data, select(inside, number * texel_words<format>, U(0u)));
         return select(inside, to_rgba(texel), vec4<F>(F(0.0f)));
     });
+}
+
+// Texels x, x + 1, x + 2 and x + 3 of a row of a format with one channel; what lies outside the slice is read at its edge. One
+// load brings all four.
+template <Format format, class F, class Slice>
+[[gnu::always_inline]] inline vec4<F> fetch_row(const TextureLevel& level, LaneInt<F> x, LaneInt<F> y, Slice slice) {
+    static_assert(channel_count(format) == 1 && texel_words<format> == 1);
+    using I = LaneInt<F>;
+    const auto clamped = []<class N>(N number, int size) __attribute__((always_inline)) { return min(max(number, N(0)), N(size - 1)); };
+    const LaneUint<F> row = as_uint(clamped(y, level.height) * level.row_pitch + clamped(slice, level.slices) * level.slice_pitch);
+    F texel[4];
+    if (all((x >= I(0)) & (x <= I(level.width - 4)))) {
+        load_four_words<F>(reinterpret_cast<const float*>(level.data), row + as_uint(x), texel);
+    } else {
+        for (int k = 0; k < 4; ++k) texel[k] = load_texels<format, F>(level.data, row + as_uint(clamped(min(x, I(level.width)) + k, level.width))).part[0];
+    }
+    return {texel[0], texel[1], texel[2], texel[3]};
 }
 
 }  // namespace nephroid

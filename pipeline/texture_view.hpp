@@ -15,6 +15,8 @@
 //                                      a float, one for all lanes or lanes of them
 //   fetch<F>(x, y, ..., level)         one texel by its numbers; zeros outside the texture (Direct3D's Load). The level is
 //                                      an int or lanes of them
+//   fetch_row<F>(x, y, ...)            of a format with one channel, four texels side by side in a row of the first level, from
+//                                      (x, y) on: what lies outside is read at the edge. For filters of a shader's own
 //
 // Results are red, green, blue, alpha; channels that the format lacks are 0, and alpha 1. R32U gives its bits in .x; it can
 // be fetched but not sampled, as integers cannot be filtered.
@@ -74,7 +76,11 @@ public:
     }
     template <class F, class Level = int>
     [[gnu::always_inline]] vec4<F> fetch(LaneInt<F> x, LaneInt<F> y, Level level = 0) const {
-        return fetch_texel<format, F>(*this->layout_, x, y, LaneInt<F>(0), level);
+        return fetch_texel<format, F>(*this->layout_, x, y, 0, level);
+    }
+    template <class F>
+    [[gnu::always_inline]] vec4<F> fetch_row(LaneInt<F> x, LaneInt<F> y) const {
+        return nephroid::fetch_row<format, F>(this->layout_->level[0], x, y, 0);
     }
 };
 
@@ -96,6 +102,10 @@ public:
     template <class F, class Level = int>
     [[gnu::always_inline]] vec4<F> fetch(LaneInt<F> x, LaneInt<F> y, LaneInt<F> layer, Level level = 0) const {
         return fetch_texel<format, F>(*this->layout_, x, y, layer, level);
+    }
+    template <class F>
+    [[gnu::always_inline]] vec4<F> fetch_row(LaneInt<F> x, LaneInt<F> y, LaneInt<F> layer) const {
+        return nephroid::fetch_row<format, F>(this->layout_->level[0], x, y, layer);
     }
 };
 

@@ -68,15 +68,8 @@ inline L load_lanes(const void* memory) {
 template <class T, int N> inline void store_lanes(void* memory, Lanes<T, N> value) { std::memcpy(memory, &value, sizeof value); }
 
 inline std::int32_t repeat_lane(std::int32_t x, int) { return x; }
-// The lanes of `mask` side by side from `memory` on, which has room for a whole register; their number.
-template <class T, int N> requires(N < 16)
-inline int compress_lanes(T* memory, Lanes<T, N> value, std::uint32_t mask) {
-    alignas(sizeof value) T all[N];
-    store_lanes(all, value);
-    int count = 0;
-    for (; mask; mask &= mask - 1) memory[count++] = all[__builtin_ctz(mask)];
-    return count;
-}
+// The lanes of `mask` side by side from `memory` on, which has room for a whole register; their number. See also the
+// instruction sets' files.
 template <class T> requires(std::is_arithmetic_v<T>)
 inline int compress_lanes(T* memory, T value, std::uint32_t mask) {
     *memory = value;

@@ -2,6 +2,7 @@
 #pragma once
 #include <arm_neon.h>
 
+#include "pipeline/lanes/compress_order.hpp"
 #include "pipeline/lanes/lanes.hpp"
 
 namespace nephroid {
@@ -58,6 +59,14 @@ inline FloatLanes<4> trunc(FloatLanes<4> x) { return neon::f(vrndq_f32(neon::f32
 inline FloatLanes<4> round_even(FloatLanes<4> x) { return neon::f(vrndnq_f32(neon::f32(x))); }
 inline IntLanes<4> to_int_in_range(FloatLanes<4> x) { return neon::i(vcvtq_s32_f32(neon::f32(x))); }
 inline FloatLanes<4> to_float(IntLanes<4> x) { return neon::f(vcvtq_f32_s32(neon::s32(x))); }
+
+// The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
+template <class T>
+inline int compress_lanes(T* memory, Lanes<T, 4> value, std::uint32_t mask) {
+    const uint8x16_t packed = vqtbl1q_u8((uint8x16_t)value.v, vld1q_u8(compress_order_bytes[mask].data()));
+    vst1q_u8(reinterpret_cast<std::uint8_t*>(memory), packed);
+    return __builtin_popcount(mask);
+}
 
 namespace neon {
 inline void transpose(float32x4_t rows[4]) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <immintrin.h>
 
+#include "pipeline/lanes/compress_order.hpp"
 #include "pipeline/lanes/lanes.hpp"
 
 namespace nephroid {
@@ -96,6 +97,14 @@ inline void store_lanes(T* memory, Lanes<T, 8> value, Mask<8> mask) {
 
 // One lane's value in all.
 inline IntLanes<8> repeat_lane(IntLanes<8> x, int lane) { return avx2::i(_mm256_permutevar8x32_epi32(avx2::si(x), _mm256_set1_epi32(lane))); }
+
+// The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
+template <class T>
+inline int compress_lanes(T* memory, Lanes<T, 8> value, std::uint32_t mask) {
+    const __m256i order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(compress_order<8>[mask].data())));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(memory), _mm256_permutevar8x32_epi32((__m256i)value.v, order));
+    return __builtin_popcount(mask);
+}
 
 namespace avx2 {
 // Four rows of two quadruples each to four columns of eight, and back: the same shuffles serve both.

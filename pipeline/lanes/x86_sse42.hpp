@@ -2,6 +2,7 @@
 #pragma once
 #include <immintrin.h>
 
+#include "pipeline/lanes/compress_order.hpp"
 #include "pipeline/lanes/lanes.hpp"
 
 namespace nephroid {
@@ -64,6 +65,14 @@ inline FloatLanes<4> trunc(FloatLanes<4> x) { return sse42::f(_mm_round_ps(sse42
 inline FloatLanes<4> round_even(FloatLanes<4> x) { return sse42::f(_mm_round_ps(sse42::ps(x), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)); }
 inline IntLanes<4> to_int_in_range(FloatLanes<4> x) { return sse42::i(_mm_cvttps_epi32(sse42::ps(x))); }
 inline FloatLanes<4> to_float(IntLanes<4> x) { return sse42::f(_mm_cvtepi32_ps(sse42::si(x))); }
+
+// The lanes of `mask` side by side from `memory` on, which takes a whole register; their number.
+template <class T>
+inline int compress_lanes(T* memory, Lanes<T, 4> value, std::uint32_t mask) {
+    const __m128i order = _mm_loadu_si128(reinterpret_cast<const __m128i*>(compress_order_bytes[mask].data()));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(memory), _mm_shuffle_epi8((__m128i)value.v, order));
+    return __builtin_popcount(mask);
+}
 
 inline void gather4(const float* base, IntLanes<4> index, FloatLanes<4> out[4]) {
     __m128 a = _mm_loadu_ps(base + index[0]), b = _mm_loadu_ps(base + index[1]), c = _mm_loadu_ps(base + index[2]), d = _mm_loadu_ps(base + index[3]);

@@ -642,14 +642,12 @@ struct ShadeFinal {
         const vec4<F> q = transform(light_view_projection, vec3<F>(p));
         const vec3<F> s = vec3<F>(q) / q.w * F(0.5f) + F(0.5f);
 
-        const LaneInt<F> cx = to_int(floor(s.x * F(static_cast<float>(shadow_size)))), cy = to_int(floor(s.y * F(static_cast<float>(shadow_size)))), last(shadow_size - 1), zero(0);
+        const LaneInt<F> cx = to_int(floor(s.x * F(static_cast<float>(shadow_size)))), cy = to_int(floor(s.y * F(static_cast<float>(shadow_size))));
         const F depth = s.z - F(0.002f);
         F lit(0.0f);  // of nine
         for (int j = -1; j <= 1; ++j) {
-            for (int i = -1; i <= 1; ++i) {
-                const LaneInt<F> tx = min(max(cx + LaneInt<F>(i), zero), last), ty = min(max(cy + LaneInt<F>(j), zero), last);
-                lit = lit + select(depth <= shadow.fetch<F>(tx, ty).x, F(1.0f), F(0.0f));
-            }
+            const vec4<F> row = shadow.fetch_row<F>(cx - 1, cy + j);
+            for (int i = 0; i < 3; ++i) lit = lit + select(depth <= row[i], F(1.0f), F(0.0f));
         }
         constexpr Sampler sampler{.filter = Filter::Bilinear};
         vec3<F> focused(F(0.0f));

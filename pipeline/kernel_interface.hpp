@@ -69,14 +69,14 @@ struct GeometryWork {
 // How the lanes of a group of fragments lie on the screen, for those who move several texels at a time.
 enum class GroupLayout : std::uint8_t {
     Loose,
-    RowsOfFour,  // rows of four neighbours from (x[0], y[0]) on, row after row, x[0] a multiple of four, all within the target
-    Splat,       // row after row of a SplatPlace, all of whose groups follow each other in one flush
+    RowsOfFour,      // rows of four neighbours from (x[0], y[0]) on, row after row, x[0] a multiple of four, all within the target
+    Splat,           // row after row of a SplatPlace, whose other groups follow
+    SplatContinued,  // such a group; all are in one flush
 };
 
 // Where a point lies, or what of it lies in a tile; pixels.
 struct SplatPlace {
     std::int32_t left, top, width, height;
-    std::int32_t first;  // the group's first fragment, counted row after row
 };
 
 // Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second

@@ -8,6 +8,7 @@
 #pragma once
 #include <algorithm>
 
+#include "pipeline/dense_places.hpp"
 #include "pipeline/edges.hpp"
 #include "pipeline/output_merger.hpp"
 #include "pipeline/triangle_rows.hpp"
@@ -32,9 +33,8 @@ class TileRasterizer {
     static constexpr int pending_capacity = 256 + lanes + part_width * part_height + lanes;
     // A triangle that shows no more than this of any row, of as many as there are lanes, is thin there.
     static constexpr int thin = 12;
-    // A point that lies within so many columns and rows is drawn row after row, a wider one in blocks.
-    static constexpr int narrow = 16;
-    static_assert(narrow * narrow <= fragments_per_flush);
+    static constexpr int point_words = static_cast<int>(sizeof(PointRecord) / 4);
+    static_assert(narrow * narrow <= fragments_per_flush);  // a narrow point is all in one flush
 
 public:
     TileRasterizer(const DrawContext& draw, int tile, TileScratch& scratch)
@@ -62,6 +62,10 @@ public:
             if (tile < batch.first_tile || tile > batch.last_tile) continue;
             const std::uint32_t *entry = batch.entries + batch.bin[tile - batch.first_tile], *entry_end = batch.entries + batch.bin[tile - batch.first_tile + 1];
             const std::uint32_t *large = batch.everywhere, *large_end = large + batch.everywhere_count;
+            if (lanes > 1 && draw_.raster_topology == Topology::PointList && large == large_end && only_record < 0) {
+                draw_points(batch, entry, entry_end);
+                continue;
+            }
             constexpr std::ptrdiff_t ahead = 8;
             const std::uint32_t* const asked_for = entry_end - std::min(ahead, entry_end - entry);
             const std::size_t record_bytes = static_cast<std::size_t>(draw_.record_bytes);
@@ -119,7 +123,7 @@ private:
             }
             return;
         }
-        if (lanes > 1 && right - left < medium && (right - left + 1) * (bottom - top + 1) <= medium) return draw_medium_triangle(r, record, left, top, right, bottom);
+        if (lanes > 1 && right - left < narrow && (right - left + 1) * (bottom - top + 1) <= medium) return draw_medium_triangle(r, record, left, top, right, bottom);
         close_packed();
         draw_large_triangle(r, left, top, right, bottom);
     }
@@ -134,13 +138,13 @@ private:
             value[k] = I(static_cast<std::int32_t>(std::clamp<std::int64_t>(e.value >> subpixel_bits, -(1 << 30), 1 << 30)));
             step_x[k] = I(e.step_x), step_y[k] = I(e.step_y);
         }
-        const int width = right - left + 1;
-        if (width != dense_width_) lay_out_dense(width);
-        I x = dense_x_, y = dense_y_;
+        const int width = right - left + 1, pixels = width * (bottom - top + 1);
+        const DensePlaces& places = dense_places[static_cast<unsigned>(width - 1)];
         int packed = packed_;  // not in memory, where the next lanes would wait for it
-        for (int remaining = width * (bottom - top + 1); remaining > 0; remaining -= lanes) {
+        for (int first = 0; first < pixels; first += lanes) {
+            const I x = load_lanes<I>(places.column + first), y = load_lanes<I>(places.row + first);
             const auto at = [&](int k) { return value[k] + x * step_x[k] + y * step_y[k]; };
-            const std::uint32_t mask = mask_bits(((at(0) | at(1) | at(2)) >= I(0)) & first_lanes<F>(remaining));
+            const std::uint32_t mask = mask_bits(((at(0) | at(1) | at(2)) >= I(0)) & first_lanes<F>(pixels - first));
             store_lanes(packed_record_ + packed, I(static_cast<std::int32_t>(record)));
             packed += compress_lanes(packed_xy_ + packed, I((top << 16) + left) + x + (y << 16), mask);
             if (packed >= lanes) {
@@ -148,7 +152,6 @@ private:
                 close_packed();
                 packed = packed_;
             }
-            step_dense(x, y, width);
         }
         packed_ = packed;
     }
@@ -396,6 +399,30 @@ private:
 
     // ---- points
 
+    // What a tile's list names, a point per lane: those of one pixel are packed as they are.
+    void draw_points(const Batch& batch, const std::uint32_t* entry, const std::uint32_t* end) {
+        const float* const words = reinterpret_cast<const float*>(draw_.raster_records);
+        for (; end - entry >= lanes; entry += lanes) {
+            // A tile's records lie anywhere in their batch's.
+            for (const std::uint32_t *next = entry + lanes, *last = std::min(end, next + lanes); next < last; ++next)
+                __builtin_prefetch(words + (batch.first_record + *next) * std::size_t{point_words});
+            const I record = load_lanes<I>(entry) + static_cast<std::int32_t>(batch.first_record);
+            F box[4];  // left, top, right, bottom
+            gather4(words, record * point_words, box);
+            const auto side = [&](int k) { return as_int(float_bits(box[k])); };
+            const M pixel = (side(2) == side(0) + 1) & (side(3) == side(1) + 1) & (side(0) >= I(left_)) & (side(0) <= I(right_)) & (side(1) >= I(top_)) & (side(1) <= I(bottom_));
+            if (!all(pixel)) {
+                for (int l = 0; l < lanes; ++l) draw_point(batch.first_record + entry[l]);
+                continue;
+            }
+            store_lanes(packed_xy_ + packed_, side(0) + (side(1) << 16));
+            store_lanes(packed_record_ + packed_, record);
+            packed_ += lanes;
+            close_packed();
+        }
+        for (; entry != end; ++entry) draw_point(batch.first_record + *entry);
+    }
+
     void draw_point(std::uint32_t record) {
         const PointRecord& r = reinterpret_cast<const PointRecord*>(draw_.raster_records)[record];
         if (r.target != target_index_) return;
@@ -417,19 +444,18 @@ private:
     // Row after row without gaps, from group to group, all in one flush. What the loop reads is at hand: a group's stores
     // could be to anything, as far as compilers know.
     void draw_splat(const PointRecord& r, int left, int top, int width, int height) {
-        if (width != dense_width_) lay_out_dense(width);
         const int fragments = width * height;
         if (fragments > (groups_per_flush<lanes> - count_) * lanes) flush();
         const bool placed = draw_.needs_z_w;
         const PointLanes point(r);
+        const DensePlaces& places = dense_places[static_cast<unsigned>(width - 1)];
+        const I lefts(left), tops(top);
         Group* g = groups_ + count_;
-        I x = dense_x_, y = dense_y_;
+        g->splat = {left, top, width, height};
         for (int first = 0; first < fragments; first += lanes, ++g) {
-            fill_point_group(*g, point, I(left) + x, I(top) + y, placed);
+            fill_point_group(*g, point, lefts + load_lanes<I>(places.column + first), tops + load_lanes<I>(places.row + first), placed);
             g->mask = fragments - first >= lanes ? all_lanes_ : (1u << (fragments - first)) - 1u;
-            g->layout = GroupLayout::Splat;
-            g->splat = {left, top, width, height, first};
-            step_dense(x, y, width);
+            g->layout = first == 0 ? GroupLayout::Splat : GroupLayout::SplatContinued;
         }
         count_ = static_cast<int>(g - groups_);
         if (draw_.kernels->shade_pixels) scratch_.statistics.ps_invocations += static_cast<unsigned>(fragments);
@@ -438,28 +464,12 @@ private:
 
     // The same where fragments may be lost.
     void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
-        if (width != dense_width_) lay_out_dense(width);
-        I x = dense_x_, y = dense_y_;
-        for (int remaining = width * height; remaining > 0; remaining -= lanes) {
+        const DensePlaces& places = dense_places[static_cast<unsigned>(width - 1)];
+        for (int first = 0, fragments = width * height; first < fragments; first += lanes) {
             groups_[count_].layout = GroupLayout::Loose;
-            add_point_group(r, I(left) + x, I(top) + y, remaining >= lanes ? all_lanes_ : (1u << remaining) - 1u);
-            step_dense(x, y, width);
+            add_point_group(r, I(left) + load_lanes<I>(places.column + first), I(top) + load_lanes<I>(places.row + first),
+                            fragments - first >= lanes ? all_lanes_ : (1u << (fragments - first)) - 1u);
         }
-    }
-    void step_dense(I& x, I& y, int width) const {
-        x = x + dense_columns_on_;
-        const M next_row = x >= width;
-        x = select(next_row, x - width, x);
-        y = y + dense_rows_on_ + select(next_row, I(1), I(0));
-    }
-    // Which column and row of a rectangle this wide the lanes of its first group stand on, and how far the next ones are.
-    void lay_out_dense(int width) {
-        dense_width_ = width;
-        const I number = lane_index<F>();
-        dense_y_ = to_int_in_range((to_float(number) + F(0.5f)) * F(1.0f / static_cast<float>(width)));  // exact: numbers are small
-        dense_x_ = number - dense_y_ * width;
-        dense_columns_on_ = lanes % width;
-        dense_rows_on_ = lanes / width;
     }
 
     void draw_point_blocks(const PointRecord& r, int left, int top, int right, int bottom) {
@@ -624,7 +634,7 @@ private:
             store_word(g.primitive_id, c[2]);
             if (draw_.program.traits->takes_pixel_input) store_word(g.front_facing, gather(words + 24, at));
         } else {
-            const I at = record * static_cast<int>(sizeof(PointRecord) / 4);
+            const I at = record * point_words;
             F a[4], b[4];
             gather4(words + 8, at, b);
             if (draw_.needs_z_w) {
@@ -667,13 +677,13 @@ private:
                 const Group& group = groups_[g];
                 if (group.layout == GroupLayout::Splat) {
                     const SplatPlace& s = group.splat;
-                    if (s.first != 0) continue;
                     const std::byte* at = first + s.top * pitch + s.left * texel_bytes;
-                    for (int row = 0; row < s.height; ++row, at += pitch) {
+                    const std::ptrdiff_t last = (s.width - 1) * texel_bytes;
+                    for (int row = s.height; row > 0; --row, at += pitch) {
                         __builtin_prefetch(at, 1);
-                        __builtin_prefetch(at + (s.width - 1) * texel_bytes, 1);
+                        __builtin_prefetch(at + last, 1);
                     }
-                } else {
+                } else if (group.layout != GroupLayout::SplatContinued) {
                     for (int l = 0; l < lanes; l += group.layout == GroupLayout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
                 }
             }
@@ -702,8 +712,6 @@ private:
     int left_, top_, right_, bottom_;  // of the tile, cut to what may be drawn, right and bottom included
     I lane_x_, lane_y_, lane_xy_;      // a lane's place in a block; both in one, y in the high half
     int result_stride_;
-    int dense_width_ = 0, dense_columns_on_ = 0, dense_rows_on_ = 0;  // see lay_out_dense
-    I dense_x_, dense_y_;
     // Fragments of small primitives that wait for a group: x in the low half and y in the high one; whose they are.
     alignas(64) std::int32_t packed_xy_[3 * lanes], packed_record_[3 * lanes];
     // Pixels of the current triangle that wait for groups, x in the low half and y in the high one.

@@ -13,6 +13,13 @@
 
 namespace nephroid {
 
+// Where a group's texels are, in bytes from the first one of the tile's first row, `top`: within a tile 32 bits are enough.
+template <class F>
+[[gnu::always_inline]] inline LaneInt<F> texel_offsets(const FragmentGroup<lanes_of<F>>& group, int top, std::ptrdiff_t pitch, int texel_bytes) {
+    using I = LaneInt<F>;
+    return (load_lanes<I>(group.y) - top) * static_cast<int>(pitch) + load_lanes<I>(group.x) * texel_bytes;
+}
+
 template <class F>
 inline LaneMask<F> passes(CompareOp op, F value, F reference) {
     switch (op) {
@@ -28,15 +35,15 @@ inline LaneMask<F> passes(CompareOp op, F value, F reference) {
     return LaneMask<F>(false);
 }
 
-// Tests a group's depths one after another, as two may be of one pixel; `stored_as` is what to write of those that pass.
-// Without branches: which fragments lie behind others would be guessed wrong.
-template <int N, class Compare>
-[[gnu::always_inline]] inline std::uint32_t test_depths(const RasterTarget& target, const FragmentGroup<N>& group, const float* depth, const float* stored_as, std::uint32_t mask,
-                                                        bool write, Compare compare) {
+// Tests a group's depths one after another, as two may be of one pixel; `stored_as` is what to write of those that pass, `at`
+// where, in bytes from `origin`. Without branches: which fragments lie behind others would be guessed wrong.
+template <class Compare>
+[[gnu::always_inline]] inline std::uint32_t test_depths(std::byte* origin, const std::int32_t* offset, const float* depth, const float* stored_as, std::uint32_t mask, bool write,
+                                                        Compare compare) {
     std::uint32_t passed = 0;
     for (std::uint32_t bits = mask; bits; bits &= bits - 1) {
         const int l = __builtin_ctz(bits);
-        std::byte* const at = target.depth + group.y[l] * target.depth_pitch + group.x[l] * 4;
+        std::byte* const at = origin + offset[l];
         std::uint32_t before, after;
         std::memcpy(&before, at, 4);
         std::memcpy(&after, stored_as + l, 4);
@@ -49,9 +56,10 @@ template <int N, class Compare>
     return passed;
 }
 
-// Tests a group's fragments against the depth target, writes the depth of those that pass, returns their lanes.
+// Tests a group's fragments, of the tile whose first row is `top`, against the depth target, writes the depth of those that
+// pass, returns their lanes.
 template <class F>
-inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& target, const FragmentGroup<lanes_of<F>>& group, const float* depth, std::uint32_t mask,
+inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& target, int top, const FragmentGroup<lanes_of<F>>& group, const float* depth, std::uint32_t mask,
                                 PipelineStatistics& statistics) {
     constexpr int lanes = lanes_of<F>;
     if (lanes > 1 && group.layout == GroupLayout::RowsOfFour) {
@@ -62,9 +70,21 @@ inline std::uint32_t test_depth(const DepthState& state, const RasterTarget& tar
         if (state.write && mask) store_rows_of_four(first, target.depth_pitch, select(is_nan(value), F(canonical_nan), value), mask);
     } else {
         const F value = load_lanes<F>(depth);
+        std::byte* const origin = target.depth + top * target.depth_pitch;
+        const LaneInt<F> offset = texel_offsets<F>(group, top, target.depth_pitch, 4);
+        if constexpr (lanes > 1) {
+            // What is written only ever makes these tests harder to pass: who fails against what is there now fails later, too.
+            if (state.test == CompareOp::Less || state.test == CompareOp::LessEqual || state.test == CompareOp::Greater || state.test == CompareOp::GreaterEqual) {
+                const F before = gather(reinterpret_cast<const float*>(origin), offset >> 2, mask_from_bits<F>(mask));
+                mask &= mask_bits(passes<F>(state.test, value, before));
+                if (!mask) return 0;
+            }
+        }
         alignas(64) float stored_as[lanes];
+        alignas(64) std::int32_t offsets[lanes];
         store_lanes(stored_as, select(is_nan(value), F(canonical_nan), value));
-        const auto one_by_one = [&](auto compare) __attribute__((always_inline)) { return test_depths(target, group, depth, stored_as, mask, state.write, compare); };
+        store_lanes(offsets, offset);
+        const auto one_by_one = [&](auto compare) __attribute__((always_inline)) { return test_depths(origin, offsets, depth, stored_as, mask, state.write, compare); };
         std::uint32_t passed = 0;
         switch (state.test) {
             case CompareOp::Never: break;
@@ -301,10 +321,8 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
                 for (int x = s.left; x < s.left + s.width; ++x, colors += channels) merge_texel<format, mode>(how, row + x * bytes_per_texel(format), colors);
             continue;
         }
-        // Within a tile 32 bits are enough.
-        using I = LaneInt<F>;
         alignas(64) std::int32_t offset[lanes];
-        store_lanes(offset, (load_lanes<I>(group.y) - work.top) * static_cast<int>(work.pitch) + load_lanes<I>(group.x) * bytes_per_texel(format));
+        store_lanes(offset, texel_offsets<F>(group, work.top, work.pitch, bytes_per_texel(format)));
         merge_texels<lanes, format, mode>(how, tile_row, offset, colors, mask);
     }
 }
@@ -335,7 +353,7 @@ inline void merge(const DrawContext& draw, const RasterTarget& target, const Fra
             } else {
                 std::memcpy(depth, groups[g].z, sizeof depth);
             }
-            masks[g] = test_depth<F>(draw.state.depth, target, groups[g], depth, masks[g], statistics);
+            masks[g] = test_depth<F>(draw.state.depth, target, top, groups[g], depth, masks[g], statistics);
         }
         fragments += static_cast<unsigned>(__builtin_popcount(masks[g]));
     }

@@ -75,7 +75,10 @@ public:
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
                 const std::uint32_t record = take_large ? *large++ : *entry++;
                 // A tile's records lie anywhere in their batch's.
-                if (entry < asked_for) __builtin_prefetch(records + entry[ahead] * record_bytes);
+                if (entry < asked_for) {
+                    __builtin_prefetch(records + entry[ahead] * record_bytes);
+                    __builtin_prefetch(records + entry[ahead] * record_bytes + record_bytes - 1);
+                }
                 if (only_record < 0 || record == static_cast<std::uint32_t>(only_record)) draw_record(batch.first_record + record);
             }
         }
@@ -359,7 +362,7 @@ private:
         store_lanes(g.y, py);
         weigh(g, px, py, {F(r.origin_x), F(r.origin_y)}, {F(r.b1_dx), F(r.b1_dy), F(r.b2_dx), F(r.b2_dy)}, {F(r.z0), F(r.z1), F(r.z2)},
               {F(r.inverse_w[0]), F(r.inverse_w[1]), F(r.inverse_w[2])});
-        if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
+        if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
         for (int c = 0; c < 3; ++c) g.corner[c][0] = r.corner[c];
@@ -486,7 +489,7 @@ private:
     void add_point_group(const PointRecord& r, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
         fill_point_group(g, PointLanes(r), px, py, draw_.needs_z_w);
-        if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
+        if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
         add_group();
@@ -579,7 +582,7 @@ private:
             g.w[l] = w;
             g.point_x[l] = g.point_y[l] = 0.0f;
         }
-        g.mask = draw_.early_depth ? test_depth<F>(draw_.state.depth, target_, g, g.z, 1u, scratch_.statistics) : 1u;
+        g.mask = draw_.early_depth ? test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, 1u, scratch_.statistics) : 1u;
         if (!g.mask) return;
         g.corner[0][0] = g.corner[2][0] = r.corner[0];
         g.corner[1][0] = r.corner[1];
@@ -627,7 +630,7 @@ private:
             gather4(words + 12, at, z_w);
             gather4(words + 16, at, b);
             weigh(g, px, py, {a[2], a[3]}, slope, {z_w[0], z_w[1], z_w[2]}, {z_w[3], b[0], b[1]});
-            if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
+            if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, mask, scratch_.statistics);
             if (!mask) return;
             gather4(words + 20, at, c);
             store_word(g.corner[0], b[2]), store_word(g.corner[1], b[3]), store_word(g.corner[2], c[0]), store_word(g.leading, c[1]);
@@ -641,7 +644,7 @@ private:
                 gather4(words + 4, at, a);
                 place_in_point(g, px, py, a[0], a[1], a[2], a[3], b[0]);
             }
-            if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, g, g.z, mask, scratch_.statistics);
+            if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, mask, scratch_.statistics);
             if (!mask) return;
             store_word(g.leading, b[1]);
             store_word(g.primitive_id, b[2]);

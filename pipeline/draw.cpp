@@ -251,6 +251,8 @@ void run_front_end(const DrawContext& draw, std::int64_t first_primitive, int co
     assemble_batch(draw, first_primitive, count, batch);
 
     batch.statistics.vs_invocations = static_cast<unsigned>(batch.vertex_count);
+    // Points go from the vertex stage to the geometry stage lane by lane.
+    batch.shaded.in_lanes = t.has_geometry && batch.assembled.in_order;
     draw.kernels->shade_vertices({draw.program.vertex_shader, draw.vertex_buffer, batch.numbered ? nullptr : batch.vertex_ids, batch.numbered ? nullptr : batch.vertex_instances,
                                   batch.first_vertex_id, batch.instance_id, batch.vertex_count, batch.shaded});
 
@@ -258,6 +260,7 @@ void run_front_end(const DrawContext& draw, std::int64_t first_primitive, int co
         GeometryWork work{};
         work.shader = draw.program.geometry_shader;
         work.records = batch.shaded.records;
+        work.in_lanes = batch.shaded.in_lanes;
         work.in = batch.assembled;
         work.instance_ids = batch.numbered ? nullptr : batch.primitive_instances;
         work.instance_id = batch.instance_id;

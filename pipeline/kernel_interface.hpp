@@ -19,6 +19,7 @@ constexpr int padded(int count) { return (count + lane_padding - 1) / lane_paddi
 // output writes them; what the fixed-function stages need lies beside them, one array per value.
 struct VertexArrays {
     std::byte* records = nullptr;  // null: nobody will read them
+    bool in_lanes = false;         // a struct of lanes for as many vertices instead, as only the next kernel reads them
     float* position[4] = {};       // clip space x, y, z, w; null where nothing is rasterized
     float* point_size = nullptr;   // null where the vertex struct has none
     std::int32_t* layer = nullptr;
@@ -58,6 +59,7 @@ struct GeometryStreamWork {
 struct GeometryWork {
     const void* shader;
     const std::byte* records;   // of the vertex stage
+    bool in_lanes;              // as VertexArrays says; then `in` is in order
     PrimitiveArrays in;         // arrays valid up to padded(count)
     const std::uint32_t* instance_ids;  // per primitive, [padded(count)]; null where `in` is numbered: instance_id for all
     std::uint32_t instance_id;

@@ -2,9 +2,9 @@
 
 namespace nephroid {
 
-constinit const std::array<DensePlaces, narrow> dense_places = [] {
-    std::array<DensePlaces, narrow> places{};
-    for (int width = 1; width <= narrow; ++width) {
+constinit const std::array<DensePlaces, DensePlaces::widest> dense_places = [] {
+    std::array<DensePlaces, DensePlaces::widest> places{};
+    for (int width = 1; width <= DensePlaces::widest; ++width) {
         for (int number = 0; number < DensePlaces::count; ++number) {
             places[static_cast<std::size_t>(width - 1)].column[number] = number % width;
             places[static_cast<std::size_t>(width - 1)].row[number] = number / width;

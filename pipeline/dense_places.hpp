@@ -6,16 +6,15 @@
 
 namespace nephroid {
 
-inline constexpr int narrow = 16;  // columns, and rows
-
 struct DensePlaces {
+    static constexpr int widest = 16;  // columns, and rows
     // Numbers go on to where a register of any width ends.
-    static constexpr int count = narrow * narrow + 16;
+    static constexpr int count = widest * widest + 16;
     alignas(64) std::int32_t column[count];
     alignas(64) std::int32_t row[count];
 };
 
 // dense_places[width - 1] is of rectangles so wide.
-extern const std::array<DensePlaces, narrow> dense_places;
+extern const std::array<DensePlaces, DensePlaces::widest> dense_places;
 
 }  // namespace nephroid

@@ -94,10 +94,14 @@ void shade_primitives(GeometryWork& work) {
         for (int i = 0; i < work.in.count; i += lanes) {
             const int active = work.in.count - i < lanes ? work.in.count - i : lanes;
             typename Types::Input in;
-            if (work.in_lanes) {
-                std::memcpy(static_cast<void*>(&in[0]), work.records + static_cast<std::size_t>(i) * component_count<In> * 4, sizeof in[0]);
-            } else {
+            const auto gather_corners = [&] {
                 for (std::size_t c = 0; c < in.size(); ++c) in[c] = gather_records<In>(work.records, corner_of<F>(work.in, c, i));
+            };
+            if constexpr (vertices_per_primitive(GS::input) == 1) {
+                if (work.in_lanes) std::memcpy(static_cast<void*>(&in[0]), work.records + static_cast<std::size_t>(i) * component_count<In> * 4, sizeof in[0]);
+                else gather_corners();
+            } else {
+                gather_corners();
             }
             const LaneUint<F> primitive_id = ids_of<F>(work.in, i);
             alignas(64) std::uint32_t primitive_ids[lanes];

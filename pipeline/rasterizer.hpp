@@ -29,10 +29,13 @@ class TileRasterizer {
     // A triangle that lies within so many pixels is one whose fragments do not fill groups of their own.
     static constexpr int medium = 64;
     static constexpr std::uint32_t all_lanes_ = (1u << lanes) - 1u;
-    // Room for pixels that wait, which are read once they are long in memory: what close_pending leaves, a part, and a register.
-    static constexpr int pending_capacity = 256 + lanes + part_width * part_height + lanes;
+    // So many pixels of a triangle wait before groups are made of them: the first were then long in memory when they are read.
+    // A part, or a register, may come on top.
+    static constexpr int pending_enough = 256, pending_capacity = pending_enough + std::max(lanes, part_width * part_height) + lanes;
     // A triangle that shows no more than this of any row, of as many as there are lanes, is thin there.
     static constexpr int thin = 12;
+    // A rectangle of no more columns and rows is filled row after row, a wider one in blocks.
+    static constexpr int narrow = DensePlaces::widest;
     static constexpr int point_words = static_cast<int>(sizeof(PointRecord) / 4);
     static_assert(narrow * narrow <= fragments_per_flush);  // a narrow point is all in one flush
 
@@ -227,7 +230,7 @@ private:
         int pending = pending_;  // not in memory, where the next ones would wait for it
         for (std::uint32_t rows = mask_bits(count > 0); rows; rows = mask_bits(count > 0)) {
             pending += compress_lanes(pending_xy_ + pending, xy, rows);
-            if (pending >= 256) {
+            if (pending >= pending_enough) {
                 pending_ = pending;
                 close_pending(r, false);
                 pending = pending_;
@@ -344,7 +347,7 @@ private:
             pending += compress_lanes(pending_xy_ + pending, lane_xy_ + ((block_y(block) << 16) + block_x(block)), inside_block(block));
         }
         pending_ = pending;
-        if (pending_ >= 256) close_pending(r, false);
+        if (pending_ >= pending_enough) close_pending(r, false);
     }
 
     // A block of one triangle, in rows of four.

@@ -38,12 +38,14 @@ struct ShadowMap {
         F lit(0.0f);
         LaneMask<F> seen(false);
         for (int j = -1; j <= 2; ++j) {
+            const LaneInt<F> ty = min(max(y + LaneInt<F>(j), LaneInt<F>(0)), last);
+            const vec4<F> depths = depth.fetch_row<F>(x - 1, ty, layer), shown = ids.fetch_row<F>(x - 1, ty, layer);
             for (int i = -1; i <= 2; ++i) {
-                const LaneInt<F> tx = min(max(x + LaneInt<F>(i), LaneInt<F>(0)), last), ty = min(max(y + LaneInt<F>(j), LaneInt<F>(0)), last);
+                const LaneInt<F> tx = min(max(x + LaneInt<F>(i), LaneInt<F>(0)), last);
                 const F own = plane_nearness(position, n, layer, (to_float(tx) + F(0.5f)) * inverse_side, (to_float(ty) + F(0.5f)) * inverse_side);
-                const F first = depth.fetch<F>(tx, ty, layer).x;
+                const F first = depths[i + 1];
                 constexpr float rounding = 1e-5f, curvature = 2e-3f;
-                const LaneMask<F> same = ids.fetch<F>(tx, ty, layer).x == id;
+                const LaneMask<F> same = shown[i + 1] == id;
                 // A curved surface lies a little before its own plane.
                 lit = lit + select(own >= first * select(same, F(1.0f - curvature), F(1.0f - rounding)), across[i + 1] * down[j + 1], F(0.0f));
                 seen = seen | (same & (abs(own - first) <= first * F(curvature)));

@@ -76,6 +76,23 @@ std::vector<Isa> isas_to_compare() {
     return available;
 }
 
+TEST_CASE("the lanes of every mask are put side by side, and nothing beyond a register is written") {
+    for (const Isa isa : isas_to_compare()) {
+        const unsigned lanes = static_cast<unsigned>(lane_count(isa));
+        std::uint32_t x[16], result[17];
+        for (unsigned l = 0; l < 16; ++l) x[l] = 0x80000001u + 0x01010101u * l;
+        for (std::uint32_t mask = 0; mask < 1u << lanes; ++mask) {
+            result[lanes] = 12345u;
+            const int count = math_kernels(isa).compress(x, mask, result);
+            int k = 0;
+            for (unsigned l = 0; l < lanes; ++l)
+                if (mask >> l & 1u) REQUIRE(result[k++] == x[l]);
+            REQUIRE(count == k);
+            REQUIRE(result[lanes] == 12345u);
+        }
+    }
+}
+
 TEST_CASE("lanes give the same bits as float: one argument") {
     for (const Isa isa : isas_to_compare()) {
         const MathKernelTable& kernels = math_kernels(isa);

@@ -64,6 +64,7 @@ const MathKernelTable& MathKernels<isa>::table() {
                 for (std::size_t word = 0; word < 4; ++word) store_lanes(r + word * n + k, words[word]);
             }
         },
+        .compress = [](const std::uint32_t* x, std::uint32_t mask, std::uint32_t* r) { return compress_lanes(r, load_lanes<U>(x), mask); },
     };
     return kernels;
 }

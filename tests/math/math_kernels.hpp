@@ -23,6 +23,8 @@ struct MathKernelTable {
     void (*random_uniform)(std::uint64_t seed, const std::uint32_t* index, std::uint32_t dimension, float* result, std::size_t count);
     // One block with every word its own lanes: counter and result are four arrays of `count`, one after another.
     void (*philox)(const std::uint32_t* counter, const std::uint32_t* key, std::uint32_t* result, std::size_t count);
+    // One register's lanes of a mask side by side; their number.
+    int (*compress)(const std::uint32_t* x, std::uint32_t mask, std::uint32_t* result);
 };
 
 template <Isa>

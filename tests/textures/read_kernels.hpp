@@ -16,6 +16,7 @@ enum class Read {
     SampleConstexpr,     // with constexpr_sampler, at `lod`
     Fetch,               // at `level`
     FetchLaneInts,       // at `levels`
+    FetchRow,            // four in a row
 };
 
 constexpr Sampler constexpr_sampler{Filter::Trilinear, AddressMode::Wrap, AddressMode::Mirror, AddressMode::Clamp};
@@ -63,6 +64,7 @@ struct CubeReadKernels {
 
 // Which kinds of read are compiled for which format; all of them for all would take minutes to compile.
 constexpr bool compiled(TextureKind kind, Format format, Read read) {
+    if (read == Read::FetchRow) return (kind == TextureKind::Texture2D || kind == TextureKind::Texture2DArray) && (format == Format::R32F || format == Format::D32F);
     if (format == Format::R32U) return read == Read::Fetch;
     if (read == Read::SampleLevel || read == Read::Fetch) return true;
     if (read == Read::SampleLaneFloats) {

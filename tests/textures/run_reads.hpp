@@ -26,6 +26,13 @@ vec4<F> fetch_at(const View& view, const ReadBatch& b, int i, Level level) {
     else return view.template fetch<F>(x, y, load_lanes<LaneInt<F>>(b.z + i), level);
 }
 
+template <class F, TextureKind kind, class View>
+vec4<F> row_at(const View& view, const ReadBatch& b, int i) {
+    const LaneInt<F> x = load_lanes<LaneInt<F>>(b.x + i), y = load_lanes<LaneInt<F>>(b.y + i);
+    if constexpr (kind == TextureKind::Texture2D) return view.template fetch_row<F>(x, y);
+    else return view.template fetch_row<F>(x, y, load_lanes<LaneInt<F>>(b.z + i));
+}
+
 template <class F, Format format, TextureKind kind, Read read>
 bool run_read(const ReadBatch& b) {
     if constexpr (!compiled(kind, format, read)) {
@@ -40,6 +47,7 @@ bool run_read(const ReadBatch& b) {
             else if constexpr (read == Read::SampleLaneInts) c = sample_at<F, kind>(view, b.sampler, b, i, load_lanes<LaneInt<F>>(b.levels + i));
             else if constexpr (read == Read::SampleConstexpr) c = sample_at<F, kind>(view, constexpr_sampler, b, i, load_lanes<F>(b.lod + i));
             else if constexpr (read == Read::Fetch) c = fetch_at<F, kind>(view, b, i, b.level);
+            else if constexpr (read == Read::FetchRow) c = row_at<F, kind>(view, b, i);
             else c = fetch_at<F, kind>(view, b, i, load_lanes<LaneInt<F>>(b.levels + i));
             for (int k = 0; k < 4; ++k) store_lanes(b.rgba[k] + i, c[k]);
         }
@@ -57,6 +65,7 @@ bool run_read(Read read, const ReadBatch& b) {
         case Read::SampleConstexpr: return run_read<F, format, kind, Read::SampleConstexpr>(b);
         case Read::Fetch: return run_read<F, format, kind, Read::Fetch>(b);
         case Read::FetchLaneInts: return run_read<F, format, kind, Read::FetchLaneInts>(b);
+        case Read::FetchRow: return run_read<F, format, kind, Read::FetchRow>(b);
     }
     return false;
 }

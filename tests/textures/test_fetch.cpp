@@ -117,3 +117,37 @@ TEST_CASE("Fetches of neighbours, of one texel by many, and of what only looks l
     CHECK(inside > 10000);
     CHECK(outside > 10000);
 }
+
+TEST_CASE("Rows of four texels, as far as the texture goes, and its edge beyond") {
+    Random random(32);
+    int inside = 0, beyond = 0;
+    for (const TextureKind kind : {TextureKind::Texture2D, TextureKind::Texture2DArray})
+        for (const Format format : {Format::R32F, Format::D32F})
+            for (const Shape& shape : {Shape{1, 1, 1}, Shape{3, 5, 2}, Shape{4, 4, 1}, Shape{21, 9, 3}}) {
+                Texture t = make_texture(kind, format, shape);
+                REQUIRE(t.faults().empty());
+                fill_random(t, random);
+                for (const Isa isa : available_isas())
+                    // All lanes inside the texture, and anywhere.
+                    for (const bool anywhere : {false, true}) {
+                        Batch b(64);
+                        for (std::size_t i = 0; i < b.x.size(); ++i) {
+                            b.x[i] = anywhere ? awkward_number(random, t.width(0)) : static_cast<int>(random() % static_cast<unsigned>(std::max(1, t.width(0) - 3)));
+                            b.y[i] = awkward_number(random, t.height(0));
+                            b.z[i] = kind == TextureKind::Texture2D ? 0 : awkward_number(random, t.slices(0));
+                        }
+                        REQUIRE(run(isa, Read::FetchRow, b.of(t, {}, 0)));
+                        for (std::size_t i = 0; i < b.x.size(); ++i)
+                            for (std::size_t k = 0; k < 4; ++k) {
+                                const std::int64_t x = std::int64_t{b.x[i]} + static_cast<std::int64_t>(k);
+                                const int column = static_cast<int>(std::clamp<std::int64_t>(x, 0, t.width(0) - 1));
+                                (column == x ? inside : beyond)++;
+                                const auto right = expected(t, column, std::clamp(b.y[i], 0, t.height(0) - 1), std::clamp(b.z[i], 0, t.slices(0) - 1), 0)[0];
+                                if (bits(b.rgba[k][i]) != right)
+                                    FAIL(name_of(isa), " ", name_of(kind), " ", name_of(format), " at ", b.x[i], " + ", k, ", ", b.y[i], " is ", bits(b.rgba[k][i]), " and should be ", right);
+                            }
+                    }
+            }
+    CHECK(inside > 1000);
+    CHECK(beyond > 1000);
+}

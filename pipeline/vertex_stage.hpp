@@ -95,9 +95,11 @@ void shade_vertices(const VertexWork& work) {
             else out = shader.template operator()<F>(in);
         }
         for_each_system_value(work.out, out, [i](auto* array, const auto& value) { store_lanes(array + i, value); });
-        std::byte* const records = work.out.records + static_cast<std::size_t>(i) * component_count<Out> * 4;
-        if (work.out.in_lanes) std::memcpy(records, &out, sizeof out);
-        else if (work.out.records) store_records(records, offset, out);
+        if (work.out.records) {
+            std::byte* const records = work.out.records + static_cast<std::size_t>(i) * component_count<Out> * 4;
+            if (work.out.in_lanes) std::memcpy(records, &out, sizeof out);
+            else store_records(records, offset, out);
+        }
     }
 }
 

@@ -336,7 +336,8 @@ inline void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& w
     }
 }
 
-// Merges the results of a flush's groups, which lie in the tile whose first row is `top`: the late depth test where there was no early one, then every colour.
+// Merges the results of a flush's groups, which lie in the tile whose first row is `top`: the late depth test where there was
+// no early one, then every colour.
 template <class F>
 inline void merge(const DrawContext& draw, const RasterTarget& target, const FragmentGroup<lanes_of<F>>* groups, int top, int count, const float* results,
                   int result_stride, PipelineStatistics& statistics) {

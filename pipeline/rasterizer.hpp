@@ -79,10 +79,7 @@ public:
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
                 const std::uint32_t record = take_large ? *large++ : *entry++;
                 // A tile's records lie anywhere in their batch's.
-                if (entry < asked_for) {
-                    __builtin_prefetch(records + entry[ahead] * record_bytes);
-                    __builtin_prefetch(records + entry[ahead] * record_bytes + record_bytes - 1);
-                }
+                if (entry < asked_for) __builtin_prefetch(records + entry[ahead] * record_bytes);
                 if (only_record < 0 || record == static_cast<std::uint32_t>(only_record)) draw_record(batch.first_record + record);
             }
         }

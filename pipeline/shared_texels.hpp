@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 
 #include "pipeline/texel.hpp"
 #include "pipeline/texel_lanes.hpp"

@@ -21,7 +21,6 @@ inline constexpr float canonical_nan = bits_float(0x7fc00000u);
 
 // Red, green, blue, alpha: the compiler's own vector of four, in a register where there is one.
 typedef float Color4 __attribute__((vector_size(16)));
-typedef std::int32_t Color4Mask __attribute__((vector_size(16)));
 
 inline Color4 splat4(float v) { return Color4{v, v, v, v}; }
 inline Color4 canonical(Color4 v) { return v == v ? v : splat4(canonical_nan); }

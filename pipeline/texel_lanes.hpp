@@ -140,25 +140,31 @@ template <Format format, class F>
     }
 }
 
-// True in lanes 4 i to 4 i + 3 if their numbers follow one another. So they do where a shader reads its own pixel.
+// True if lanes stand for a block of texels, four in a row and row i for lanes 4 i to 4 i + 3. So they do where a shader reads its
+// own pixel.
 template <int N>
-[[gnu::always_inline]] inline Mask<N> in_rows_of_four(UintLanes<N> number) {
-    const UintLanes<N> first = number - as_uint(lane_index<FloatLanes<N>>() & 3);
-    const FloatLanes<N> bits = bits_float(first);
-    return float_bits(quads::shuffle<0, 0, 0, 0>(bits, bits)) == first;
+[[gnu::always_inline]] inline bool are_block(IntLanes<N> x, IntLanes<N> y) {
+    const IntLanes<N> index = lane_index<FloatLanes<N>>();
+    return all((x - lane(x, 0) == (index & 3)) & (y - lane(y, 0) == index >> 2));
 }
-// Texels in rows of four by their numbers. Those in the same column of the next block of rows are asked for: whoever reads
-// its own pixel will come for them soon, and memory's own foresight does not reach from a tile's row to its next.
+// Formats whose blocks are read by rows.
 template <Format format, class F>
-[[gnu::always_inline]] inline TexelLanes<format, F> load_texel_rows(const std::byte* data, LaneUint<F> number, int row_pitch) {
-    static_assert(format == Format::RGBA32F);
-    const float* base = reinterpret_cast<const float*>(data);
-    const LaneInt<F> word = as_int(number * texel_words<format>);
+inline constexpr bool has_block_loads = lanes_of<F> >= 4 && (format == Format::RGBA32F || texel_words<format> == 1);
+// A block of texels, the first one at `first`, rows `pitch` bytes apart.
+template <Format format, class F>
+[[gnu::always_inline]] inline TexelLanes<format, F> load_block(const std::byte* first, std::ptrdiff_t pitch) {
+    // The next block of rows is asked for: whoever reads its own pixel will come for it soon, and memory's own foresight does
+    // not reach from a tile's row to its next.
     constexpr int rows = lanes_of<F> / 4;
-    for (int i = 0; i < rows; ++i) __builtin_prefetch(base + static_cast<std::uint32_t>(lane(word, 4 * i)) + std::ptrdiff_t{rows} * row_pitch * texel_words<format>);
-    TexelLanes<format, F> texel;
-    load_quad_rows(base, word, texel.part);
-    return texel;
+    for (int i = 0; i < rows; ++i) __builtin_prefetch(first + (rows + i) * pitch);
+    if constexpr (format == Format::RGBA32F) {
+        TexelLanes<format, F> texel;
+        load_quad_rows(first, pitch, texel.part);
+        return texel;
+    } else {
+        const F words[1] = {load_rows_of_four(first, pitch, static_cast<F*>(nullptr))};
+        return decode_texel<format, F>(words);
+    }
 }
 
 // What is known of two texels' numbers: the second is the first + 1; or that, or the first; or anything.

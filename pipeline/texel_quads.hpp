@@ -106,11 +106,11 @@ template <int N>
     const quads::LaneAddresses<N> at(base, index);
     for (int j = 0; j < 4; ++j) q[j] = quads::load_quad(at, j, 0);
 }
-// The same where lanes 4 i to 4 i + 3 read 16 floats one after another, from the first one's index on.
+// Rows of 16 floats, `pitch` bytes apart, the first one at `first`: row i for lanes 4 i to 4 i + 3.
 template <int N>
-[[gnu::always_inline]] inline void load_quad_rows(const float* base, IntLanes<N> index, FloatLanes<N> q[4]) {
+[[gnu::always_inline]] inline void load_quad_rows(const std::byte* first, std::ptrdiff_t pitch, FloatLanes<N> q[4]) {
 #if defined(__AVX512F__)
-    const auto row = [&](int i) __attribute__((always_inline)) { return _mm512_loadu_ps(base + static_cast<std::uint32_t>(lane(index, 4 * i))); };
+    const auto row = [&](int i) __attribute__((always_inline)) { return _mm512_loadu_ps(first + i * pitch); };
     const __m512 a = row(0), b = row(1), c = row(2), d = row(3);
     // Part j of row i becomes part i of register j.
     const __m512 ab01 = _mm512_shuffle_f32x4(a, b, 0x44), ab23 = _mm512_shuffle_f32x4(a, b, 0xee), cd01 = _mm512_shuffle_f32x4(c, d, 0x44), cd23 = _mm512_shuffle_f32x4(c, d, 0xee);
@@ -118,7 +118,7 @@ template <int N>
     q[0] = lanes(_mm512_shuffle_f32x4(ab01, cd01, 0x88)), q[1] = lanes(_mm512_shuffle_f32x4(ab01, cd01, 0xdd));
     q[2] = lanes(_mm512_shuffle_f32x4(ab23, cd23, 0x88)), q[3] = lanes(_mm512_shuffle_f32x4(ab23, cd23, 0xdd));
 #else
-    load_quads(base, index, q);
+    for (int j = 0; j < 4; ++j) q[j] = load_rows_of_four(first + 16 * j, pitch, static_cast<FloatLanes<N>*>(nullptr));
 #endif
 }
 // The same in `a`, and the four behind in `b`.

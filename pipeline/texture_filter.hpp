@@ -161,14 +161,24 @@ template <Format format, class F, class Level, class Read>
 template <Format format, class F, class Slice, class Level>
 [[gnu::always_inline]] inline vec4<F> fetch_texel(const TextureLayout& layout, LaneInt<F> x, LaneInt<F> y, Slice slice, Level level) {
     using U = LaneUint<F>;
+    // Asked before anything of the texture, and so once for all that a shader fetches by the same numbers.
+    bool block = false;
+    if constexpr (has_block_loads<format, F> && std::is_same_v<Slice, int>) block = are_block(x, y);
     return for_each_level<F>(level, [&](int l) __attribute__((always_inline)) {
         // Numbers are compared as unsigned ones: what is below 0 then lies above every size. A level or slice that is not
         // there is one of width 0.
         bool exists = l >= 0 && l < layout.level_count;
         const TextureLevel& from = layout.level[exists ? l : 0];
         if constexpr (std::is_same_v<Slice, int>) exists = exists && slice >= 0 && slice < from.slices;
-        const U column = as_uint(x), row = as_uint(y);
-        const U width(exists ? static_cast<unsigned>(from.width) : 0u), height(static_cast<unsigned>(from.height));
+        const unsigned level_width = exists ? static_cast<unsigned>(from.width) : 0u, level_height = static_cast<unsigned>(from.height);
+        if constexpr (has_block_loads<format, F> && std::is_same_v<Slice, int>) {
+            const std::size_t column = static_cast<unsigned>(lane(x, 0)), row = static_cast<unsigned>(lane(y, 0));
+            if (block && column + 4 <= level_width && row + lanes_of<F> / 4 <= level_height) {
+                const std::size_t pitch = static_cast<std::size_t>(from.row_pitch), number = static_cast<std::size_t>(slice) * from.slice_pitch + row * pitch + column;
+                return to_rgba(load_block<format, F>(from.data + number * bytes_per_texel(format), static_cast<std::ptrdiff_t>(pitch * bytes_per_texel(format))));
+            }
+        }
+        const U column = as_uint(x), row = as_uint(y), width(level_width), height(level_height);
         LaneMask<F> inside = (column < width) & (row < height);
         U number = row * static_cast<unsigned>(from.row_pitch) + column;
         if constexpr (std::is_same_v<Slice, int>) {
@@ -177,8 +187,6 @@ template <Format format, class F, class Slice, class Level>
             inside = inside & (as_uint(slice) < U(static_cast<unsigned>(from.slices)));
             number = number + as_uint(slice) * static_cast<unsigned>(from.slice_pitch);
         }
-        if constexpr (format == Format::RGBA32F && lanes_of<F> >= 4)
-            if (all(inside & in_rows_of_four(number))) return to_rgba(load_texel_rows<format, F>(from.data, number, from.row_pitch));
         const TexelLanes<format, F> texel = load_texels<format, F>(from.data, select(inside, number * texel_words<format>, U(0u)));
         return select(inside, to_rgba(texel), vec4<F>(F(0.0f)));
     });

@@ -62,7 +62,7 @@ Capacities capacities(const DrawContext& draw) {
     c.raster_vertices = c.vertices;
     if (t.has_geometry) {
         c.emitted = padded(draw.batch_primitives * t.max_vertices + 1);
-        c.emitted_primitives = padded(draw.batch_primitives * max_primitives_emitted(t) + 1);
+        c.emitted_primitives = padded(draw.batch_primitives * max_primitives_emitted(t) + lane_padding);
         c.raster_primitives = draw.batch_primitives * max_primitives_emitted(t);
         c.raster_vertices = c.emitted;
     }

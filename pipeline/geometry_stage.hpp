@@ -11,18 +11,9 @@
 namespace nephroid {
 
 // Takes the strips apart that the lanes of one run emitted. `first[l]` is the place of lane l's first vertex.
-template <int N>
 inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const std::uint32_t* cut, int emissions, const std::int32_t* first,
                              const std::uint32_t* primitive_id, int active, PrimitiveArrays& out) {
     const int corners = vertices_per_primitive(topology);
-    if (out.in_order) {
-        for (int l = 0; l < active; ++l)
-            for (int e = 0; e < emissions; ++e) {
-                out.primitive_id[out.count] = primitive_id[l];
-                out.count += static_cast<int>(mask[e] >> l & 1u);
-            }
-        return;
-    }
     for (int l = 0; l < active; ++l) {
         std::uint32_t vertex = static_cast<std::uint32_t>(first[l]), strip = vertex;
         for (int e = 0; e < emissions; ++e) {
@@ -47,26 +38,46 @@ inline void assemble_emitted(Topology topology, const std::uint32_t* mask, const
     }
 }
 
+// Points, of which lane l has emitted count[l]: their vertices are in order, so that their ids are all there is to say of them.
+template <class F>
+inline void number_points(const std::int32_t* count, const std::uint32_t* primitive_id, PrimitiveArrays& out) {
+    constexpr int lanes = lanes_of<F>;
+    for (int l = 0; l < lanes; ++l) {
+        // Whole registers: what is too much is the next ones' place.
+        for (int k = 0; k < count[l]; k += lanes) store_lanes(out.primitive_id + out.count + k, LaneUint<F>(primitive_id[l]));
+        out.count += count[l];
+    }
+}
+
 template <class F, class V, int MaxVertices>
 inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>& emitted, const std::uint32_t* primitive_id, int active,
                              GeometryStreamWork& stream) {
     constexpr int lanes = lanes_of<F>;
+    using I = LaneInt<F>;
     const std::uint32_t active_bits = active >= 32 ? ~0u : (1u << active) - 1u;
     std::uint32_t mask[MaxVertices];
-    std::int32_t first[lanes], place[lanes];
-    for (int e = 0; e < emitted.count; ++e) mask[e] = emitted.mask[e] & active_bits;
+    const auto one_in = [](std::uint32_t bits) { return select(mask_from_bits<F>(bits), I(1), I(0)); };
+    I emissions(0);
+    for (int e = 0; e < emitted.count; ++e) {
+        mask[e] = emitted.mask[e] & active_bits;
+        emissions = emissions + one_in(mask[e]);
+    }
+    alignas(64) std::int32_t count[lanes], first[lanes], place[lanes], offset[lanes];
+    store_lanes(count, emissions);
     const int first_of_all = stream.vertex_count;
     for (int l = 0; l < lanes; ++l) {
         first[l] = stream.vertex_count;
-        for (int e = 0; e < emitted.count; ++e) stream.vertex_count += mask[e] >> l & 1u;
-        place[l] = first[l];
+        stream.vertex_count += count[l];
     }
+    I next = load_lanes<I>(first);
     for (int e = 0; e < emitted.count; ++e) {
         if (!mask[e]) continue;
-        std::int32_t offset[lanes];
-        for (int l = 0; l < lanes; ++l) offset[l] = (mask[e] >> l & 1u ? place[l] : stream.junk_vertex) * component_count<V>;
         const V& v = emitted.vertex[e];
-        if (stream.out.records) store_records(stream.out.records, offset, v);
+        if (stream.out.records) {
+            store_lanes(offset, select(mask_from_bits<F>(mask[e]), next, I(stream.junk_vertex)) * component_count<V>);
+            store_records(stream.out.records, offset, v);
+        }
+        if constexpr (MaxVertices > 1) store_lanes(place, next);
         for_each_system_value(stream.out, v, [&]<class T>(T* array, const auto& value) {
             if constexpr (MaxVertices == 1) {  // side by side
                 compress_lanes(array + first_of_all, value, mask[e]);
@@ -76,9 +87,10 @@ inline void append_emissions(Topology topology, const Emissions<V, MaxVertices>&
                 for (std::uint32_t bits = mask[e]; bits; bits &= bits - 1) array[place[__builtin_ctz(bits)]] = all[__builtin_ctz(bits)];
             }
         });
-        for (int l = 0; l < lanes; ++l) place[l] += static_cast<int>(mask[e] >> l & 1u);
+        next = next + one_in(mask[e]);
     }
-    assemble_emitted<lanes>(topology, mask, emitted.cut, emitted.count, first, primitive_id, active, stream.primitives);
+    if (stream.primitives.in_order) number_points<F>(count, primitive_id, stream.primitives);
+    else assemble_emitted(topology, mask, emitted.cut, emitted.count, first, primitive_id, active, stream.primitives);
 }
 
 template <class F, class GS>

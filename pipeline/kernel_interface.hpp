@@ -72,17 +72,24 @@ struct GeometryWork {
 enum class GroupLayout : std::uint8_t {
     Loose,
     RowsOfFour,      // rows of four neighbours from (x[0], y[0]) on, row after row, x[0] a multiple of four, all within the target
-    Splat,           // row after row of a SplatPlace, whose other groups follow
-    SplatContinued,  // such a group; all are in one flush
+    Splat,           // row after row of a Splat, of which this is the first group; the others follow, all in one flush
 };
 
-// Where a point lies, or what of it lies in a tile; pixels.
-struct SplatPlace {
+// A point, or what of it lies in a tile, narrow enough for DensePlaces: the pixels it covers, which are its fragments one after
+// another, and what their places in it follow from (see PointRecord).
+struct Splat {
     std::int32_t left, top, width, height;
+    float x, y, inverse_size, z, w;
+    template <int N>
+    int groups() const { return (width * height + (N - 1)) / N; }
 };
+// From the middle of a pixel to its place in a point, 0 to 1 from side to side.
+template <class F>
+inline F point_coordinate(F pixel, F centre, F inverse_size) { return (pixel - centre) * inverse_size + 0.5f; }
 
 // Fragments wait for the pixel stage in groups of one per lane. The barycentric weights b1, b2 are those of the second
-// and third corner, perspective-correct; l1, l2 are the ones linear on the screen.
+// and third corner, perspective-correct; l1, l2 are the ones linear on the screen. Of a splat's groups nothing is filled but, in
+// the first one, what is the same for all its fragments.
 template <int N>
 struct alignas(64) FragmentGroup {
     std::int32_t x[N], y[N];
@@ -99,7 +106,7 @@ struct alignas(64) FragmentGroup {
     bool uniform;
     bool constant;  // a point: every fragment has the leading vertex's values, `corner` is not filled
     GroupLayout layout;
-    SplatPlace splat;  // of a Splat
+    Splat splat;
 };
 
 // How many groups are shaded at a time: enough to hide the calls, few enough to stay in the first-level cache.

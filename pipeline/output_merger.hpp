@@ -308,9 +308,9 @@ void merge_groups(const ColorTarget& how, const MergeWork<lanes_of<F>>& work) {
             }
         }
         if (group.layout == GroupLayout::Splat) {
-            const SplatPlace& s = group.splat;
+            const Splat& s = group.splat;
             std::byte* row = work.first_row + s.top * work.pitch;
-            g += (s.width * s.height - 1) / lanes;
+            g += s.template groups<lanes>() - 1;
             if constexpr (has_spans) {
                 if (aligned) {
                     merge_rows<F, channels, mode>(row, work.pitch, s.left, s.left + s.width, s.height, colors);
@@ -345,6 +345,11 @@ inline void merge(const DrawContext& draw, const RasterTarget& target, const Fra
     std::uint32_t masks[groups_per_flush<lanes>];
     std::uint64_t fragments = 0;
     for (int g = 0; g < count; ++g) {
+        if (groups[g].layout == GroupLayout::Splat) {  // which loses nothing to depth
+            fragments += static_cast<unsigned>(groups[g].splat.width * groups[g].splat.height);
+            g += groups[g].splat.template groups<lanes>() - 1;
+            continue;
+        }
         masks[g] = groups[g].mask;
         if (!draw.early_depth && draw.state.depth.used() && masks[g]) {
             alignas(64) float depth[lanes];

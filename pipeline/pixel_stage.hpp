@@ -5,6 +5,7 @@
 // A value that varies is a + b1 (b - a) + b2 (c - a) for the values a, b, c at the corners, whether the lanes of a group
 // share their primitive or not; so it is exactly a where all three are equal.
 #pragma once
+#include "pipeline/dense_places.hpp"
 #include "pipeline/vertex_stage.hpp"
 
 namespace nephroid {
@@ -126,6 +127,28 @@ template <class F>
     return in;
 }
 
+// The same for a splat's groups, whose fragments' places follow from it.
+template <class F>
+class SplatInput {
+public:
+    SplatInput() = default;
+    [[gnu::always_inline]] explicit SplatInput(const FragmentGroup<lanes_of<F>>& first)
+        : places_(&dense_places[static_cast<unsigned>(first.splat.width - 1)]), left_(first.splat.left), top_(first.splat.top), x_(first.splat.x), y_(first.splat.y),
+          inverse_size_(first.splat.inverse_size), z_(first.splat.z), w_(first.splat.w), primitive_id_(first.primitive_id[0]) {}
+    // Of the fragments from number `fragment` on.
+    [[gnu::always_inline]] PixelInput<F> at(const PixelWork& work, int fragment) const {
+        const F x = to_float(load_lanes<LaneInt<F>>(places_->column + fragment) + left_) + 0.5f, y = to_float(load_lanes<LaneInt<F>>(places_->row + fragment) + top_) + 0.5f;
+        return {vec4<F>(x, y, z_, w_), vec2<F>(point_coordinate(x, x_, inverse_size_), point_coordinate(y, y_, inverse_size_)), LaneMask<F>(true), primitive_id_,
+                LaneInt<F>(work.layer), LaneInt<F>(work.level)};
+    }
+
+private:
+    const DensePlaces* places_ = nullptr;
+    LaneInt<F> left_, top_;
+    F x_, y_, inverse_size_, z_, w_;
+    LaneUint<F> primitive_id_;
+};
+
 template <class F>
 inline void store_color(float* results, int target, const vec4<F>& color) {
     for (int c = 0; c < 4; ++c) store_lanes(results + (target * 4 + c) * lanes_of<F>, color[c]);
@@ -157,25 +180,35 @@ void shade_pixels(const PixelWork& work) {
     constexpr bool takes_system_input = Signature::template takes<PixelInput<F>>;
     // A copy, which results cannot overwrite: what it computes from its members alone is then computed once.
     const PS shader = *static_cast<const PS*>(work.shader);
-    FragmentGroup<lanes_of<F>>* groups = static_cast<FragmentGroup<lanes_of<F>>*>(work.groups);
+    constexpr int lanes = lanes_of<F>;
+    using Group = FragmentGroup<lanes>;
+    Group* const groups = static_cast<Group*>(work.groups);
 
     for (int g = 0; g < work.count;) {
         // Groups of one primitive together: what its vertices alone determine is then computed once for all of them, as far as
         // the shader's call operator is inlined here.
+        const int begin = g;
+        const Group& first = groups[begin];
+        const bool splat = lanes > 1 && first.layout == GroupLayout::Splat;
+        int end = begin + (splat ? first.splat.template groups<lanes>() : 1);
         CornerValues<std::conditional_t<std::is_void_v<In>, int, VF>> corners{};
-        int end = g + 1;
         if constexpr (!std::is_void_v<In> && varying_count<VF> > 0) {
-            while (end < work.count && same_vertices(groups[g], groups[end])) ++end;
-            load_corners<F, VF, Vf>(corners, groups[g], work.records);
+            while (!splat && end < work.count && same_vertices(first, groups[end])) ++end;
+            load_corners<F, VF, Vf>(corners, first, work.records);
         }
+        SplatInput<F> splat_input;
+        if (splat) splat_input = SplatInput<F>(first);
         for (; g < end; ++g) {
-            FragmentGroup<lanes_of<F>>& group = groups[g];
+            Group& group = splat ? groups[begin] : groups[g];
             float* results = work.results + static_cast<std::size_t>(g) * work.result_stride;
+            const auto system = [&]() __attribute__((always_inline)) {
+                return splat ? splat_input.at(work, (g - begin) * lanes) : system_input<F>(work, group);
+            };
             if constexpr (std::is_void_v<In>) {
-                store_result<F>(results, group.mask, shader.template operator()<F>(system_input<F>(work, group)));
+                store_result<F>(results, group.mask, shader.template operator()<F>(system()));
             } else {
                 const VF in = interpolate<F, VF, Vf>(corners, group);
-                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input<F>(work, group)));
+                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system()));
                 else store_result<F>(results, group.mask, shader.template operator()<F>(in));
             }
         }

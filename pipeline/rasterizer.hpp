@@ -441,32 +441,25 @@ private:
         }
         close_packed();
         if (width > narrow || height > narrow) draw_point_blocks(r, left, top, right, bottom);
-        else if (draw_.keeps_all) draw_splat(r, left, top, width, height);
+        else if (draw_.keeps_all && !draw_.observer) draw_splat(r, left, top, width, height);
         else draw_dense_point(r, left, top, width, height);
     }
 
-    // Row after row without gaps, from group to group, all in one flush. What the loop reads is at hand: a group's stores
-    // could be to anything, as far as compilers know.
+    // Row after row without gaps, from group to group, all in one flush: where each fragment lies is left to who asks.
     void draw_splat(const PointRecord& r, int left, int top, int width, int height) {
-        const int fragments = width * height;
-        if (fragments > (groups_per_flush<lanes> - count_) * lanes) flush();
-        const bool placed = draw_.needs_z_w;
-        const PointLanes point(r);
-        const DensePlaces& places = dense_places[static_cast<unsigned>(width - 1)];
-        const I lefts(left), tops(top);
-        Group* g = groups_ + count_;
-        g->splat = {left, top, width, height};
-        for (int first = 0; first < fragments; first += lanes, ++g) {
-            fill_point_group(*g, point, lefts + load_lanes<I>(places.column + first), tops + load_lanes<I>(places.row + first), placed);
-            g->mask = fragments - first >= lanes ? all_lanes_ : (1u << (fragments - first)) - 1u;
-            g->layout = first == 0 ? GroupLayout::Splat : GroupLayout::SplatContinued;
-        }
-        count_ = static_cast<int>(g - groups_);
-        if (draw_.kernels->shade_pixels) scratch_.statistics.ps_invocations += static_cast<unsigned>(fragments);
+        const Splat splat{left, top, width, height, r.x, r.y, r.inverse_size, r.z, r.w};
+        const int groups = splat.template groups<lanes>();
+        if (count_ + groups > groups_per_flush<lanes>) flush();
+        Group& g = groups_[count_];
+        g.layout = GroupLayout::Splat;
+        g.splat = splat;
+        fill_point(g, r);
+        count_ += groups;
+        if (draw_.kernels->shade_pixels) scratch_.statistics.ps_invocations += static_cast<unsigned>(width * height);
         if (count_ == groups_per_flush<lanes>) flush();
     }
 
-    // The same where fragments may be lost.
+    // The same where fragments may be lost, or are looked at one by one.
     void draw_dense_point(const PointRecord& r, int left, int top, int width, int height) {
         const DensePlaces& places = dense_places[static_cast<unsigned>(width - 1)];
         for (int first = 0, fragments = width * height; first < fragments; first += lanes) {
@@ -489,34 +482,30 @@ private:
 
     void add_point_group(const PointRecord& r, I px, I py, std::uint32_t mask) {
         Group& g = groups_[count_];
-        fill_point_group(g, PointLanes(r), px, py, draw_.needs_z_w);
+        fill_point(g, r);
+        store_lanes(g.x, px);
+        store_lanes(g.y, py);
+        if (draw_.needs_z_w) place_in_point(g, px, py, F(r.x), F(r.y), F(r.inverse_size), F(r.z), F(r.w));
         if (draw_.early_depth) mask = test_depth<F>(draw_.state.depth, target_, tile_top_, g, g.z, mask, scratch_.statistics);
         if (!mask) return;
         g.mask = mask;
         add_group();
     }
 
-    struct PointLanes {
-        explicit PointLanes(const PointRecord& r) : x(r.x), y(r.y), inverse_size(r.inverse_size), z(r.z), w(r.w), vertex(r.vertex), primitive_id(r.primitive_id) {}
-        F x, y, inverse_size, z, w;
-        std::uint32_t vertex, primitive_id;
-    };
-    static void fill_point_group(Group& g, const PointLanes& point, I px, I py, bool placed) {
+    // What is the same for all fragments.
+    static void fill_point(Group& g, const PointRecord& r) {
         g.uniform = g.constant = true;
-        g.leading[0] = point.vertex;
-        g.primitive_id[0] = point.primitive_id;
+        g.leading[0] = r.vertex;
+        g.primitive_id[0] = r.primitive_id;
         g.front_facing[0] = 1;
-        store_lanes(g.x, px);
-        store_lanes(g.y, py);
-        if (placed) place_in_point(g, px, py, point.x, point.y, point.inverse_size, point.z, point.w);
     }
 
     // A point's values are its vertex's: no weights. Its depth is that of its centre.
     static void place_in_point(Group& g, I px, I py, F x, F y, F inverse_size, F z, F w) {
         store_lanes(g.z, z);
         store_lanes(g.w, w);
-        store_lanes(g.point_x, (to_float(px) + 0.5f - x) * inverse_size + 0.5f);
-        store_lanes(g.point_y, (to_float(py) + 0.5f - y) * inverse_size + 0.5f);
+        store_lanes(g.point_x, point_coordinate(to_float(px) + 0.5f, x, inverse_size));
+        store_lanes(g.point_y, point_coordinate(to_float(py) + 0.5f, y, inverse_size));
     }
 
     // ---- lines
@@ -654,14 +643,15 @@ private:
             for (int g = 0; g < count_; ++g) {
                 const Group& group = groups_[g];
                 if (group.layout == GroupLayout::Splat) {
-                    const SplatPlace& s = group.splat;
+                    const Splat& s = group.splat;
+                    g += s.template groups<lanes>() - 1;
                     const std::byte* at = first + s.top * pitch + s.left * texel_bytes;
                     const std::ptrdiff_t last = (s.width - 1) * texel_bytes;
                     for (int row = s.height; row > 0; --row, at += pitch) {
                         __builtin_prefetch(at, 1);
                         __builtin_prefetch(at + last, 1);
                     }
-                } else if (group.layout != GroupLayout::SplatContinued) {
+                } else {
                     for (int l = 0; l < lanes; l += group.layout == GroupLayout::RowsOfFour ? 4 : 1) __builtin_prefetch(first + group.y[l] * pitch + group.x[l] * texel_bytes, 1);
                 }
             }

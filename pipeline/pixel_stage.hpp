@@ -131,19 +131,18 @@ template <class F>
 template <class F>
 class SplatInput {
 public:
-    SplatInput() = default;
     [[gnu::always_inline]] explicit SplatInput(const FragmentGroup<lanes_of<F>>& first)
-        : places_(&dense_places[static_cast<unsigned>(first.splat.width - 1)]), left_(first.splat.left), top_(first.splat.top), x_(first.splat.x), y_(first.splat.y),
+        : places_(dense_places[static_cast<unsigned>(first.splat.width - 1)]), left_(first.splat.left), top_(first.splat.top), x_(first.splat.x), y_(first.splat.y),
           inverse_size_(first.splat.inverse_size), z_(first.splat.z), w_(first.splat.w), primitive_id_(first.primitive_id[0]) {}
     // Of the fragments from number `fragment` on.
     [[gnu::always_inline]] PixelInput<F> at(const PixelWork& work, int fragment) const {
-        const F x = to_float(load_lanes<LaneInt<F>>(places_->column + fragment) + left_) + 0.5f, y = to_float(load_lanes<LaneInt<F>>(places_->row + fragment) + top_) + 0.5f;
+        const F x = to_float(load_lanes<LaneInt<F>>(places_.column + fragment) + left_) + 0.5f, y = to_float(load_lanes<LaneInt<F>>(places_.row + fragment) + top_) + 0.5f;
         return {vec4<F>(x, y, z_, w_), vec2<F>(point_coordinate(x, x_, inverse_size_), point_coordinate(y, y_, inverse_size_)), LaneMask<F>(true), primitive_id_,
                 LaneInt<F>(work.layer), LaneInt<F>(work.level)};
     }
 
 private:
-    const DensePlaces* places_ = nullptr;
+    const DensePlaces& places_;
     LaneInt<F> left_, top_;
     F x_, y_, inverse_size_, z_, w_;
     LaneUint<F> primitive_id_;
@@ -171,6 +170,11 @@ inline void store_result(float* results, std::uint32_t& mask, const PixelDepthOu
     mask &= ~mask_bits(out.discard);
 }
 
+template <class GS>
+inline constexpr bool may_draw_points = true;
+template <class GS> requires(is_geometry_shader<GS>)
+inline constexpr bool may_draw_points<GS> = GS::output == Topology::PointList;
+
 template <class F, class VS, class GS, class PS>
 void shade_pixels(const PixelWork& work) {
     using VF = typename RasterStruct<VS, GS, F>::type;
@@ -189,28 +193,28 @@ void shade_pixels(const PixelWork& work) {
         // the shader's call operator is inlined here.
         const int begin = g;
         const Group& first = groups[begin];
-        const bool splat = lanes > 1 && first.layout == GroupLayout::Splat;
+        const bool splat = may_draw_points<GS> && lanes > 1 && first.layout == GroupLayout::Splat;
         int end = begin + (splat ? first.splat.template groups<lanes>() : 1);
         CornerValues<std::conditional_t<std::is_void_v<In>, int, VF>> corners{};
         if constexpr (!std::is_void_v<In> && varying_count<VF> > 0) {
             while (!splat && end < work.count && same_vertices(first, groups[end])) ++end;
             load_corners<F, VF, Vf>(corners, first, work.records);
         }
-        SplatInput<F> splat_input;
-        if (splat) splat_input = SplatInput<F>(first);
-        for (; g < end; ++g) {
-            Group& group = splat ? groups[begin] : groups[g];
+        const auto shade = [&](Group& group, const auto& system_input) __attribute__((always_inline)) {
             float* results = work.results + static_cast<std::size_t>(g) * work.result_stride;
-            const auto system = [&]() __attribute__((always_inline)) {
-                return splat ? splat_input.at(work, (g - begin) * lanes) : system_input<F>(work, group);
-            };
             if constexpr (std::is_void_v<In>) {
-                store_result<F>(results, group.mask, shader.template operator()<F>(system()));
+                store_result<F>(results, group.mask, shader.template operator()<F>(system_input()));
             } else {
                 const VF in = interpolate<F, VF, Vf>(corners, group);
-                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system()));
+                if constexpr (takes_system_input) store_result<F>(results, group.mask, shader.template operator()<F>(in, system_input()));
                 else store_result<F>(results, group.mask, shader.template operator()<F>(in));
             }
+        };
+        if (splat) {
+            const SplatInput<F> input(first);
+            for (; g < end; ++g) shade(groups[begin], [&]() __attribute__((always_inline)) { return input.at(work, (g - begin) * lanes); });
+        } else {
+            for (; g < end; ++g) shade(groups[g], [&]() __attribute__((always_inline)) { return system_input<F>(work, groups[g]); });
         }
     }
 }

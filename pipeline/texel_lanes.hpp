@@ -182,6 +182,13 @@ template <Format format, class F>
     } else {
         const float* base = reinterpret_cast<const float*>(data);
         const LaneUint<F> word = row + first * words;
+        // What is loaded as the second is the texel behind the first: not so at an edge, where both are the same, or the second
+        // is at the other end of the row. Lanes that read beyond an edge mostly all do, and then need no second one.
+        const LaneMask<F> adjacent = second > first;
+        if (neighbours == Neighbours::Mostly && none(adjacent)) {
+            a = b = load_texels<format, F>(data, word);
+            return;
+        }
         if constexpr (format == Format::RGBA32F) {
             load_quad_pairs(base, as_int(word), a.part, b.part);
         } else if constexpr (is_quads<format, F>) {
@@ -192,12 +199,8 @@ template <Format format, class F>
             a = decode_texel<format, F>(w);
             b = decode_texel<format, F>(w + 2);
         }
-        // What was loaded as the second is the texel behind the first: not so at an edge, where both are the same, or the
-        // second is at the other end of the row.
-        if (neighbours == Neighbours::Always) return;
-        const LaneMask<F> adjacent = second > first;
-        if (neighbours == Neighbours::Mostly) b = select_texel<format, F>(adjacent, b, a);
-        else if (!all(adjacent)) b = select_texel<format, F>(adjacent, b, load_texels<format, F>(data, row + second * words));
+        if (neighbours == Neighbours::Always || all(adjacent)) return;
+        b = select_texel<format, F>(adjacent, b, neighbours == Neighbours::Mostly ? a : load_texels<format, F>(data, row + second * words));
     }
 }
 

@@ -46,7 +46,9 @@ template <Format format, class F, class Slice>
     // The second row is `words` further for all lanes, and at y1.
     const auto rows = [&](const LinearTaps<F>& x, const LinearTaps<F>& y, unsigned words, LaneUint<F> y1, Neighbours neighbours) __attribute__((always_inline)) {
         const TexelLanes<format, F> first = filter_row<format, F>(sampler, level.data, slice + y.first * pitch, x, neighbours, border, y.first_inside);
-        const TexelLanes<format, F> second = filter_row<format, F>(sampler, level.data + words * sizeof(float), slice + y1 * pitch, x, neighbours, border, y.second_inside);
+        TexelLanes<format, F> second = first;
+        if (border || words > 0 || !all(y1 == y.first))
+            second = filter_row<format, F>(sampler, level.data + words * sizeof(float), slice + y1 * pitch, x, neighbours, border, y.second_inside);
         return to_rgba(lerp(first, second, spread_over_channels<format, F>(y.weight)));
     };
     // Taking addresses out of lanes is what costs: where the second row is the next one in all of them, the first one's serve.

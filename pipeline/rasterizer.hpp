@@ -403,7 +403,7 @@ private:
 
     // ---- points
 
-    // What a tile's list names, a point per lane: those of one pixel are packed as they are.
+    // What a tile's list names, a point per lane: those of one pixel are packed as they are, splats cut to the tile together.
     void draw_points(const Batch& batch, const std::uint32_t* entry, const std::uint32_t* end) {
         const float* const words = reinterpret_cast<const float*>(draw_.raster_records);
         for (; end - entry >= lanes; entry += lanes) {
@@ -414,26 +414,39 @@ private:
             F box[4];  // left, top, right, bottom
             gather4(words, record * point_words, box);
             const auto side = [&](int k) { return as_int(float_bits(box[k])); };
-            const M pixel = (side(2) == side(0) + 1) & (side(3) == side(1) + 1) & (side(0) >= I(left_)) & (side(0) <= I(right_)) & (side(1) >= I(top_)) & (side(1) <= I(bottom_));
-            if (!all(pixel)) {
+            const I left = max(side(0), I(left_)), top = max(side(1), I(top_)), width = min(side(2), I(right_ + 1)) - left, height = min(side(3), I(bottom_ + 1)) - top;
+            if (all((width == I(1)) & (height == I(1)) & (side(2) == side(0) + 1) & (side(3) == side(1) + 1))) {
+                store_lanes(packed_xy_ + packed_, left + (top << 16));
+                store_lanes(packed_record_ + packed_, record);
+                packed_ += lanes;
+                close_packed();
+            } else if (draws_splats() && all((width > 0) & (height > 0) & (max(width, height) <= narrow) & (width * height > few))) {
+                close_packed();
+                alignas(64) std::int32_t place[4 * lanes];
+                const auto word = [](I x) { return bits_float(as_uint(x)); };
+                store_transposed4(reinterpret_cast<float*>(place), word(left), word(top), word(width), word(height));
+                for (int l = 0; l < lanes; ++l) {
+                    const std::int32_t* const p = place + 4 * l;
+                    draw_splat(point(batch.first_record + entry[l]), p[0], p[1], p[2], p[3]);
+                }
+            } else {
                 for (int l = 0; l < lanes; ++l) draw_point(batch.first_record + entry[l]);
-                continue;
             }
-            store_lanes(packed_xy_ + packed_, side(0) + (side(1) << 16));
-            store_lanes(packed_record_ + packed_, record);
-            packed_ += lanes;
-            close_packed();
         }
         for (; entry != end; ++entry) draw_point(batch.first_record + *entry);
     }
+    // Points of so few pixels are packed with others.
+    static constexpr int few = 4;
+    // Whether narrow points are drawn as splats: no fragment is lost, nobody looks at them one by one.
+    bool draws_splats() const { return lanes > 1 && draw_.keeps_all && !draw_.observer; }
+    const PointRecord& point(std::uint32_t record) const { return reinterpret_cast<const PointRecord*>(draw_.raster_records)[record]; }
 
     void draw_point(std::uint32_t record) {
-        const PointRecord& r = reinterpret_cast<const PointRecord*>(draw_.raster_records)[record];
+        const PointRecord& r = point(record);
         if (r.target != target_index_) return;
         const int left = std::max(r.left, left_), top = std::max(r.top, top_), right = std::min(r.right - 1, right_), bottom = std::min(r.bottom - 1, bottom_);
         if (left > right || top > bottom) return;
         const int width = right - left + 1, height = bottom - top + 1;
-        constexpr int few = 4;
         if (lanes == 1 || width * height <= few) {
             for (int y = top; y <= bottom; ++y)
                 for (int x = left; x <= right; ++x) push(x, y, record);
@@ -441,7 +454,7 @@ private:
         }
         close_packed();
         if (width > narrow || height > narrow) draw_point_blocks(r, left, top, right, bottom);
-        else if (draw_.keeps_all && !draw_.observer) draw_splat(r, left, top, width, height);
+        else if (draws_splats()) draw_splat(r, left, top, width, height);
         else draw_dense_point(r, left, top, width, height);
     }
 

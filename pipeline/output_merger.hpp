@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "pipeline/draw_context.hpp"
 #include "pipeline/lanes.hpp"
@@ -257,19 +258,22 @@ template <class F, int channels, MergeMode mode>
     const std::ptrdiff_t stride = channels * (end - x);
     colors += channels * (first - x);
     row += first * bytes;
-    if (spans == 0) {
-        for (; rows > 0; --rows, row += pitch, colors += stride) merge_span<F, mode>(row, colors, at_first & at_end);
-    } else if (spans == 1) {
+    // Between the first span and the last one are `inner`, which are drawn whole: mostly so few that their number is worth knowing.
+    const auto merge_with = [&](auto inner) __attribute__((always_inline)) {
         for (; rows > 0; --rows, row += pitch, colors += stride) {
             merge_span<F, mode>(row, colors, at_first);
-            merge_span<F, mode>(row + span * bytes, colors + lanes_of<F>, at_end);
+            for (int on = 1; on <= inner; ++on) merge_span<F, mode>(row + on * span * bytes, colors + on * lanes_of<F>, ~0u);
+            merge_span<F, mode>(row + (inner + 1) * span * bytes, colors + (inner + 1) * lanes_of<F>, at_end);
         }
-    } else {
-        for (; rows > 0; --rows, row += pitch, colors += stride) {
-            merge_span<F, mode>(row, colors, at_first);
-            for (int on = 1; on < spans; ++on) merge_span<F, mode>(row + on * span * bytes, colors + on * lanes_of<F>, ~0u);
-            merge_span<F, mode>(row + spans * span * bytes, colors + spans * lanes_of<F>, at_end);
-        }
+    };
+    switch (spans) {
+        case 0:
+            for (; rows > 0; --rows, row += pitch, colors += stride) merge_span<F, mode>(row, colors, at_first & at_end);
+            break;
+        case 1: merge_with(std::integral_constant<int, 0>{}); break;
+        case 2: merge_with(std::integral_constant<int, 1>{}); break;
+        case 3: merge_with(std::integral_constant<int, 2>{}); break;
+        default: merge_with(spans - 1);
     }
 }
 

@@ -97,7 +97,7 @@ template <Format format, class F>
         const LinearTaps<F> x = inner_taps(r), y = inner_taps(s), z = inner_taps(t);
         [[maybe_unused]] vec4<F> result;
         if constexpr (shares_texels<format, F>)
-            if (filter_shared<format>(level, z.first * slice_pitch + y.first * pitch + x.first * texel_words<format>, {x.weight, y.weight, z.weight}, result)) return result;
+            if (filter_shared<format>(level, (z.first * unsigned(level.slice_pitch) + y.first * unsigned(level.row_pitch) + x.first) * texel_words<format>, {x.weight, y.weight, z.weight}, result)) return result;
         return rows(x, y, z, pitch, slice_pitch, y.first * pitch, z.first * slice_pitch, Neighbours::Always);
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, r, level.width), y = linear_taps(sampler.address_v, s, level.height);
@@ -136,7 +136,9 @@ template <class F, class Level, class Read>
 template <Format format, class F, class Level, class Read>
 [[gnu::always_inline]] inline vec4<F> filter_levels(Filter filter, Level level, int last, const Read& read) {
     if constexpr (std::is_same_v<Level, int> || std::is_same_v<Level, LaneInt<F>>) {
-        return for_each_level<F>(min(max(level, Level(0)), Level(last)), read);
+        // Written so that of a constant 0 nothing is left to be looked up.
+        if constexpr (std::is_same_v<Level, int>) return read(level <= 0 ? 0 : min(level, last));
+        else return for_each_level<F>(min(max(level, Level(0)), Level(last)), read);
     } else {
         // An F, or one float for all lanes. max() is written so that NaN gives 0.
         const Level clamped = min(max(Level(0.0f), level), Level(static_cast<float>(last)));

@@ -51,7 +51,65 @@ std::string compare_points(Device& d, const PipelineState& state, const Frame& f
     return "";
 }
 
+// Many points at once, drawn over each other, and what their fragments are told; the same points through a geometry shader, which
+// puts some of them into each of many layers.
+void check_fragments_of_many(Random& random, const std::vector<double>& sizes) {
+    const int width = 150, height = 44, count = random.integer(1, 400);  // two tiles
+    const Frame frame{0, 0, static_cast<double>(width), static_cast<double>(height)};
+    std::vector<GridDot> dots;
+    std::vector<RoutedVertex<float>> vertices;
+    for (int k = 0; k < count; ++k) {
+        const double size = sizes[static_cast<std::size_t>(random.integer(0, static_cast<int>(sizes.size()) - 1))];
+        dots.push_back({{random.integer(2, width * 256 - 2), random.integer(2, height * 256 - 2)}, size});
+        vertices.push_back({clip_position(frame, dots.back().centre, 0.25f), glm::vec4(1), static_cast<float>(size), 0, 0});
+    }
+    const Buffer<RoutedVertex<float>> buffer(vertices);
+    PipelineState state;
+    state.topology = Topology::PointList;
+    const std::uint32_t seed = static_cast<std::uint32_t>(random.next());
+    for (const bool amplified : {false, true}) {
+        const int layers = amplified ? PointToLayers::max_vertices : 1;
+        for (const int lanes : lane_widths()) {
+            Device& d = device(lanes);
+            Texture t[3];
+            for (Texture& target : t) target = make_target(Format::RGBA32F, width, height, layers);
+            const DrawCall call{.vertices = buffer, .render_targets = {t[0].all(), t[1].all(), t[2].all()}};
+            statistics_of(amplified ? d.draw(Program{Pass<RoutedVertex>{}, PointToLayers{seed}, ShowPixelInput{}}, state, call)
+                                    : d.draw(Program{Pass<RoutedVertex>{}, ShowPixelInput{}}, state, call));
+            int wrong = 0;
+            for (int layer = 0; layer < layers; ++layer) {
+                const Picture position = read(t[0], 0, layer), place = read(t[1], 0, layer), names = read(t[2], 0, layer);
+                for (int y = 0; y < height; ++y)
+                    for (int x = 0; x < width; ++x) {
+                        int last = count - 1;
+                        while (last >= 0 && !(dots[static_cast<std::size_t>(last)].covers(x, y) && (!amplified || emission_is_there(static_cast<std::uint32_t>(last), seed, layer)))) --last;
+                        const auto is = [&](const Picture& p, int channel, double value, double tolerance) { return std::abs(p.at(x, y, channel) - value) <= tolerance; };
+                        if (last < 0) {
+                            wrong += !is(position, 0, 0, 0) || !is(names, 0, 0, 0);
+                            continue;
+                        }
+                        const GridDot& dot = dots[static_cast<std::size_t>(last)];
+                        const double inside_x = (x + 0.5 - static_cast<double>(dot.centre.x) / 256) / dot.size + 0.5, inside_y = (y + 0.5 - static_cast<double>(dot.centre.y) / 256) / dot.size + 0.5;
+                        wrong += !(is(position, 0, x + 0.5, 0) && is(position, 1, y + 0.5, 0) && is(position, 2, 0.5, 1e-6) && is(position, 3, 0.25, 0) && is(place, 0, inside_x, 1e-4) &&
+                                   is(place, 1, inside_y, 1e-4) && is(place, 2, 1, 0) && is(names, 0, last, 0) && is(names, 1, layer, 0));
+                    }
+            }
+            CHECK_MESSAGE(wrong == 0, wrong, " pixels of ", count, " points, the first of size ", dots[0].size, ", amplified ", amplified, ", ", lanes, " lanes");
+        }
+    }
+}
+
 }  // namespace
+
+TEST_CASE("fragments of many points are told their place, their point and its layer, later points over earlier ones") {
+    Random random(52);
+    for (int round = 0; round < rounds(3, 60); ++round) {
+        check_fragments_of_many(random, {5.0});
+        check_fragments_of_many(random, {1.0});
+        check_fragments_of_many(random, {16.0, 3.25, 7.0});
+        check_fragments_of_many(random, {1.0, 2.0, 5.0, 17.0, 40.0});
+    }
+}
 
 TEST_CASE("points cover exactly the centres in their square") {
     Random random(51);

@@ -256,6 +256,21 @@ struct PointToSquares {
     }
 };
 
+// A point becomes one in each layer, or none there, up to more of them than there are lanes.
+struct PointToLayers {
+    static constexpr Topology input = Topology::PointList, output = Topology::PointList;
+    static constexpr int max_vertices = 20;
+    std::uint32_t seed;
+    template <class F>
+    void operator()(const std::array<RoutedVertex<F>, 1>& in, Emitter<RoutedVertex<F>>& out, const PrimitiveIds<F>& ids) const {
+        for (int k = 0; k < max_vertices; ++k) {
+            RoutedVertex<F> v = in[0];
+            v.layer = LaneInt<F>(k);
+            out.emit(v, emission_is_there(ids.primitive_id, seed, k));
+        }
+    }
+};
+
 // Divides the second word of a vertex by its third: 0 / 0 is a NaN of the processor's making.
 template <class F>
 struct Quotient {

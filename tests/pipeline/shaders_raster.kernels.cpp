@@ -19,4 +19,5 @@ template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, Pass<Ver
 template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, Pass<BareVertex>, NoGeometryShader, White<BareVertex>>;
 template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, Pass<UnvariedVertex>, NoGeometryShader, White<UnvariedVertex>>;
 template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, Pass<RoutedVertex>, PointToSquares, Color<RoutedVertex>>;
+template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, Pass<RoutedVertex>, PointToLayers, ShowPixelInput>;
 template struct nephroid::ProgramKernels<nephroid::NEPHROID_KERNEL_ISA, PullVertex, NoGeometryShader, Color<Vertex>>;

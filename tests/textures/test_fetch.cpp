@@ -89,7 +89,7 @@ TEST_CASE("Fetches of neighbours, of one texel by many, and of what only looks l
     Random random(31);
     int inside = 0, outside = 0;
     for (const TextureKind kind : {TextureKind::Texture2D, TextureKind::Texture2DArray, TextureKind::Texture3D, TextureKind::TextureCube})
-        for (const Format format : {Format::RGBA32F, Format::RGBA16F, Format::R32F})
+        for (const Format format : {Format::RGBA32F, Format::RGBA16F, Format::R32F, Format::RGBA8})
             for (const Shape& shape : {Shape{3, 7, 2}, Shape{16, 9, 2}, Shape{21, 17, 2}}) {
                 Texture t = make_texture(kind, format, shape);
                 REQUIRE(t.faults().empty());

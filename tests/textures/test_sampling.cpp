@@ -116,7 +116,8 @@ TEST_CASE("Every kind, format, filter and address mode gives the formula's bits 
 
 TEST_CASE("Neighbouring pixels, which read the same texels or texels next to each other") {
     // Blocks of 4 x 4 pixels, turned at will, that see a texture at many scales: from all lanes between the same texels, over
-    // blocks that an edge between texels runs through, to patches and lanes far apart. Now and then one lane goes astray.
+    // blocks that an edge between texels runs through, to patches and lanes far apart, some of them beyond the texture's edge. Now
+    // and then one lane goes astray.
     Random random(23);
     const auto uniform = [&](float from, float to) { return std::uniform_real_distribution<float>(from, to)(random); };
     const float texels_per_pixel[] = {0.0f, 0.01f, 0.06f, 0.2f, 0.4f, 0.5f, 0.7f, 1.0f, 1.4f, 3.0f};
@@ -141,7 +142,8 @@ TEST_CASE("Neighbouring pixels, which read the same texels or texels next to eac
                                 const float angle = random() % 2u == 0 ? 0.0f : uniform(0.0f, 6.3f), along[3] = {std::cos(angle), std::sin(angle), uniform(-0.5f, 0.5f)};
                                 for (int a = 0; a < 3; ++a) {
                                     const float texels = static_cast<float>(size[a]);
-                                    at[a] = random() % 4u == 0 ? uniform(-1.0f, 1.0f) / texels : uniform(0.0f, 1.0f);
+                                    const unsigned where = random() % 8u;
+                                    at[a] = where < 2 ? uniform(-1.0f, 1.0f) / texels : where == 2 ? uniform(-0.5f, 1.5f) : uniform(0.0f, 1.0f);
                                     right[a] = along[a] * scale / texels;
                                     down[a] = (a == 2 ? uniform(-0.5f, 0.5f) : a == 1 ? along[0] : -along[1]) * scale / texels;
                                 }

@@ -76,6 +76,8 @@ TEST_CASE("Fetches of neighbours, of one texel by many, and of what only looks l
         {"rows of four", [](int l) { return std::array{l % 4, l / 4}; }},
         {"a row of sixteen", [](int l) { return std::array{l, 0}; }},
         {"rows of four, each elsewhere", [](int l) { return std::array{l % 4 + l / 4 * 5 % 11, l / 4 * 7 % 5}; }},
+        {"every other row of four", [](int l) { return std::array{l % 4, l / 4 * 2}; }},
+        {"one row of four", [](int l) { return std::array{l % 4, 0}; }},
         {"one texel", [](int) { return std::array{0, 0}; }},
         {"one texel for four lanes", [](int l) { return std::array{l / 4, 0}; }},
         {"two texels, twice", [](int l) { return std::array{l % 2, l / 4}; }},

@@ -96,8 +96,10 @@ template <Format format, class F>
     if (all(is_inner(r, level.axis[0]) & is_inner(s, level.axis[1]) & is_inner(t, level.axis[2]))) {
         const LinearTaps<F> x = inner_taps(r), y = inner_taps(s), z = inner_taps(t);
         [[maybe_unused]] vec4<F> result;
-        if constexpr (shares_texels<format, F>)
-            if (filter_shared<format>(level, (z.first * unsigned(level.slice_pitch) + y.first * unsigned(level.row_pitch) + x.first) * texel_words<format>, {x.weight, y.weight, z.weight}, result)) return result;
+        if constexpr (shares_texels<format, F>) {
+            const LaneUint<F> texel = z.first * static_cast<unsigned>(level.slice_pitch) + y.first * static_cast<unsigned>(level.row_pitch) + x.first;
+            if (filter_shared<format>(level, texel * texel_words<format>, {x.weight, y.weight, z.weight}, result)) return result;
+        }
         return rows(x, y, z, pitch, slice_pitch, y.first * pitch, z.first * slice_pitch, Neighbours::Always);
     }
     const LinearTaps<F> x = linear_taps(sampler.address_u, r, level.width), y = linear_taps(sampler.address_v, s, level.height);

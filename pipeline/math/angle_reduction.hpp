@@ -21,12 +21,12 @@ inline constexpr float largest_angle_by_parts = 6433.0f;
 // is exact; subtracting the first two is exact as well, since x and the products are multiples of 2^-24 where k is not 0.
 template <LaneFloat F>
 inline ReducedAngle<F> reduce_by_parts(F ax) {
-    const auto [k, quadrant] = round_to_int(ax * 0x1.45f306p-1f);
+    const auto [k, quadrant] = round_to_int(ax * 0x1.45f306p-1f);  // and bits above the quadrant's
     const F a = (ax - k * 0x1.922p0f) - k * -0x1.2cp-18f;
     const auto [hi, lo] = fast_two_sum(a, k * -0x1.11p-26f);
     // hi can be as small as the last part's product.
     const auto [sum, rest] = fast_two_sum(hi, lo - k * 0x1.68c234p-39f);
-    return {sum, rest, quadrant};
+    return {sum, rest, as_int(quadrant)};
 }
 
 // Payne and Hanek's reduction of one finite angle of at least 2: multiplies by as many bits of 2/pi as matter, in integers.

@@ -12,17 +12,26 @@ inline F power_of_two(LaneInt<F> n) {
     return bits_float(as_uint(n + 127) << 23);
 }
 
+// Whether x * 2^n, rounded once, is an instruction.
+template <LaneFloat F>
+inline constexpr bool scales_in_one_instruction = requires(F x) { { scale_by_power_of_two(x, x) } -> std::same_as<F>; };
+
 // x * 2^n for 2^-2 <= |x| <= 2^2 and -252 <= n <= 254, rounded once, overflow and subnormal results included: the factors
-// are the halves of n, and only the second multiplication can leave the normal range. Some processors have it as an
-// instruction.
+// are the halves of n, and only the second multiplication can leave the normal range.
 template <LaneFloat F>
 inline F scale_near_one(F x, const RoundedToInt<F>& n) {
-    if constexpr (requires { { scale_by_power_of_two(x, n.value) } -> std::same_as<F>; }) {
+    if constexpr (scales_in_one_instruction<F>) {
         return scale_by_power_of_two(x, n.value);
     } else {
-        const LaneInt<F> half = n.integer >> 1;
-        return x * power_of_two<F>(half) * power_of_two<F>(n.integer - half);
+        const LaneInt<F> integer = n.integer(), half = integer >> 1;
+        return x * power_of_two<F>(half) * power_of_two<F>(integer - half);
     }
+}
+
+// x * 2^n where both are normal: n is added to the exponent's bits.
+template <LaneFloat F>
+inline F scale_within_range(F x, const RoundedToInt<F>& n) {
+    return bits_float(float_bits(x) + (n.shifted << 23));
 }
 
 // x * 2^n for every x and n, rounded once.

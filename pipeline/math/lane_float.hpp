@@ -18,6 +18,7 @@ concept LaneFloat = is_lane_float<F>;
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float smallest_normal = 0x1p-126f;
+inline constexpr float rounding_shift = 0x1.8p23f;  // added to a float, rounds it to an integer
 
 // c0 + c1 x + c2 x^2 + ... by Horner's rule. tests/math/coefficients.py makes the coefficients.
 template <LaneFloat F>
@@ -43,16 +44,16 @@ inline F flip_sign(F x, LaneUint<F> sign) {
 
 template <LaneFloat F>
 struct RoundedToInt {
-    F value;             // integral
-    LaneInt<F> integer;  // the same number
+    F value;              // integral
+    LaneUint<F> shifted;  // the same number in its lowest 22 bits, in two's complement; other bits above
+    LaneInt<F> integer() const { return as_int(shifted - float_bits(rounding_shift)); }
 };
 // Rounds to nearest even, for |x| < 2^21; NaN gives NaN and some integer. Adding 1.5 * 2^23 leaves the integer in the sum's
 // lowest bits, so no conversion is needed, and none that is undefined for NaN.
 template <LaneFloat F>
 inline RoundedToInt<F> round_to_int(F x) {
-    constexpr float shift = 0x1.8p23f;
-    const F shifted = x + shift;
-    return {shifted - shift, as_int(float_bits(shifted) - float_bits(shift))};
+    const F shifted = x + rounding_shift;
+    return {shifted - rounding_shift, float_bits(shifted)};
 }
 
 }  // namespace nephroid::lane_math

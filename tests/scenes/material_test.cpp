@@ -43,7 +43,7 @@ Camera read_camera(const json& source, const json& node = json::object()) {
 bool has_note(const std::vector<std::string>& notes, const std::string& part) {
     return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
-bool is_near(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 1e-6f; }
+bool is_close(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 1e-6f; }
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -201,7 +201,7 @@ TEST_CASE("lights: intensity times colour, at the node, along its -z") {
                                   {{"rotation", {h, 0, 0, h}}, {"scale", {2, 3, 4}}, {"name", "key"}});
     CHECK(spot.type == LightType::Spot);
     CHECK(spot.name == "key");
-    CHECK(is_near(spot.direction, {0, 1, 0}));
+    CHECK(is_close(spot.direction, {0, 1, 0}));
     CHECK(spot.intensity == glm::vec3(1));
     CHECK(spot.inner_cone == 0.2f);
     CHECK(spot.outer_cone == 0.5f);
@@ -235,9 +235,9 @@ TEST_CASE("cameras stand straight, whatever their node's scale") {
     CHECK(camera.far_plane == 90.0f);
     CHECK(camera.aspect == 1.5f);
     // A quarter turn about y takes -z to -x.
-    CHECK(is_near(-glm::vec3(camera.world_from_camera[2]), {-1, 0, 0}));
-    CHECK(is_near(glm::vec3(camera.world_from_camera[1]), {0, 1, 0}));
-    CHECK(is_near(glm::vec3(camera.world_from_camera[0]), {0, 0, -1}));
+    CHECK(is_close(-glm::vec3(camera.world_from_camera[2]), {-1, 0, 0}));
+    CHECK(is_close(glm::vec3(camera.world_from_camera[1]), {0, 1, 0}));
+    CHECK(is_close(glm::vec3(camera.world_from_camera[0]), {0, 0, -1}));
     CHECK(glm::vec3(camera.world_from_camera[3]) == glm::vec3(1, 2, 3));
     CHECK(read_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.1}}}}).far_plane == infinity);
     CHECK(read_camera({{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 9}}}},

@@ -45,7 +45,7 @@ std::vector<Expectation> expectations(const std::vector<std::pair<double, double
     return all;
 }
 
-std::string refusal(const std::string& csv) {
+std::string refusal_of(const std::string& csv) {
     try {
         model_from_csv(csv, "m.csv");
     } catch (const std::runtime_error& e) {
@@ -169,12 +169,12 @@ TEST_CASE("a model's data come back as they were, and other data are refused wit
     REQUIRE(back.size() == rows.size());
     CHECK(back[1].medium);
     CHECK(back[5].errors[3] == doctest::Approx(rows[5].errors[3]).epsilon(1e-3));
-    CHECK(refusal("scene,view\n") == "m.csv: line 1: is not of this program's ladder of settings");
-    CHECK(refusal(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 28");
+    CHECK(refusal_of("scene,view\n") == "m.csv: line 1: is not of this program's ladder of settings");
+    CHECK(refusal_of(csv + "a,b\n") == "m.csv: line 122: has 2 cells instead of 28");
     std::string broken = csv;
-    CHECK(refusal(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "x")).find("m.csv: line 2: 'x' is no number from 0 on") == 0);
+    CHECK(refusal_of(broken.replace(broken.find("\ns0,s0.0,0.5") + 9, 3, "x")).find("m.csv: line 2: 'x' is no number from 0 on") == 0);
     broken = csv;
-    CHECK(refusal(broken.replace(broken.find(",0.3,") + 1, 3, "nan")).find("m.csv: line 2: 'nan' is no number from 0 on") == 0);
+    CHECK(refusal_of(broken.replace(broken.find(",0.3,") + 1, 3, "nan")).find("m.csv: line 2: 'nan' is no number from 0 on") == 0);
 }
 
 TEST_CASE("the program's own data: every view of the model, with costs that rise") {

@@ -1,6 +1,7 @@
 // AVX-512's intrinsics, as far as the project uses them, in plain C++, lane by lane as the manual says it: what is compiled
 // for AVX-512 then runs on a processor that lacks it. ./compile puts it before every file of such kernels. Not fast.
 #pragma once
+#pragma GCC system_header  // names that are defined again get no warning
 #include <immintrin.h>
 
 #include <bit>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/chart/arithmetic.hpp"
 #include "tools/printf_text.hpp"
 
 namespace nephroid::chart {
@@ -57,8 +58,6 @@ Work work_of(stages::PassKind kind, const stages::Settings& settings) {
     return Work::CubeGeometry;
 }
 
-double squared(double v) { return v * v; }
-
 // Of a pass' targets.
 double texels_of(const RenderedPass& pass, const stages::Settings& s) {
     using enum stages::PassKind;
@@ -87,12 +86,6 @@ double texels_of(const RenderedPass& pass, const stages::Settings& s) {
         case Downsample: break;
     }
     return static_cast<double>(s.width) * s.height * s.samples_side * s.samples_side;
-}
-
-template <std::size_t N> double dot(const std::array<double, N>& a, const std::array<double, N>& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < N; ++k) sum += a[k] * b[k];
-    return sum;
 }
 
 // Gaussian elimination with pivots of a positive semidefinite system in the unknowns that `used` has; false: it has no one

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "pipeline/math.hpp"
+#include "tools/chart/arithmetic.hpp"
 #include "tools/chart/model_data.hpp"
 #include "tools/printf_text.hpp"
 
@@ -31,18 +32,11 @@ template <std::size_t N> std::array<double, N> solve(std::array<std::array<doubl
     return b;
 }
 
-template <std::size_t N> double dot(const std::array<double, N>& a, const std::array<double, N>& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < N; ++k) sum += a[k] * b[k];
-    return sum;
-}
-
 // Not the C library's, which differ from machine to machine: a choice decides a picture's bits.
 double logarithm(double v) { return static_cast<double>(log(static_cast<float>(v))); }
 double exponential(double v) { return static_cast<double>(exp(static_cast<float>(v))); }
 
 constexpr double least_error = 1e-4;
-double squared(double v) { return v * v; }
 
 std::vector<std::string_view> split(std::string_view text, char at) {
     std::vector<std::string_view> parts;
@@ -320,7 +314,7 @@ namespace {
 std::string figures_without(const std::vector<ModelRow>& rows, const std::function<bool(const ModelRow& row, const ModelRow& of)>& left_out) {
     std::string text;
     for (const double error : {0.3, 0.1, 0.03}) {
-        int right = 0, met = 0, too_dear = 0, missed = 0, refused = 0, refused_wrongly = 0;
+        int right_choices = 0, met = 0, too_dear = 0, missed = 0, refused = 0, refused_wrongly = 0;
         std::string wrong;
         for (const ModelRow& r : rows) {
             std::vector<ModelRow> others;
@@ -339,10 +333,10 @@ std::string figures_without(const std::vector<ModelRow>& rows, const std::functi
                 if (got > error) ++missed, why = printf_text("%.2g", got);
                 else if (++met; price > 2 * cheapest) ++too_dear, why = printf_text("%.1f x", price / cheapest);
             }
-            if (why.empty()) ++right;
+            if (why.empty()) ++right_choices;
             else wrong += (wrong.empty() ? "" : ", ") + r.view + " " + why;
         }
-        text += printf_text("  relMSE %-5g right for %d of %zu views: %d met (%d of them at more than twice the least cost), %d missed, %d refused (%d of them wrongly)\n", error, right, rows.size(), met, too_dear, missed,
+        text += printf_text("  relMSE %-5g right for %d of %zu views: %d met (%d of them at more than twice the least cost), %d missed, %d refused (%d of them wrongly)\n", error, right_choices, rows.size(), met, too_dear, missed,
                             refused, refused_wrongly) +
                 "    " + wrong + "\n";
     }

@@ -7,6 +7,7 @@
 
 #include "stages/exact_tracing/traced_world.hpp"
 #include "stages/mapping/splat_pass.hpp"
+#include "tools/chart/arithmetic.hpp"
 #include "tools/picture_difference.hpp"
 #include "tools/throw_faults.hpp"
 
@@ -68,8 +69,6 @@ PictureData moved(const PictureData& picture, int x_by, int y_by) {
         }
     return result;
 }
-
-double squared(double v) { return v * v; }
 
 // Of the widest splat's edge, anywhere in a map.
 double within_map(int map_size) {

@@ -170,3 +170,25 @@ TEST_CASE("a clear stores the same as a draw, in every level and layer of its vi
     }
     CHECK(bits_of(from_bits(0x7fc12345u)) == 0x7fc12345u);
 }
+
+// Such clears go past the caches, 16 bytes at a time.
+TEST_CASE("a clear of many megabytes stores the same, up to each row's last byte and nowhere else") {
+    const glm::vec4 color(0.11f, 0.2f, 0.31f, 0.4f);
+    for (const Format format : {Format::R32F, Format::RG32F, Format::RGBA32F, Format::RGBA16F, Format::RGBA8, Format::RGBA8Srgb, Format::D32F, Format::R32U}) {
+        const int texel_bytes = bytes_per_texel(format), width = 1027, height = (9 << 20) / (width * texel_bytes) + 1;
+        for (const int threads : {1, 3}) {
+            const Texture texture = make_target(format, width, height, 3);
+            must(device(1, threads).clear(texture.layers(0, 1), glm::vec4(0)));
+            must(device(1, threads).clear(texture.layers(2, 1), glm::vec4(0)));
+            must(device(1, threads).clear(texture.layers(1, 1), color));
+            const Texel inside = encode(format, color), outside{};
+            for (int layer = 0; layer < 3; ++layer) {
+                const std::vector<std::byte> bytes = bytes_of(texture, 0, layer);
+                const Texel& wanted = layer == 1 ? inside : outside;
+                int wrong = 0;
+                for (std::size_t k = 0; k < bytes.size(); k += static_cast<std::size_t>(texel_bytes)) wrong += std::memcmp(&bytes[k], wanted.data(), static_cast<std::size_t>(texel_bytes)) != 0;
+                CHECK_MESSAGE(wrong == 0, wrong, " texels of ", std::string(name_of(format)), ", layer ", layer, ", ", threads, " threads");
+            }
+        }
+    }
+}

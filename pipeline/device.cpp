@@ -54,7 +54,7 @@ Device::~Device() = default;
 namespace {
 
 // What is cleared is mostly larger than the caches. Ordinary stores read a line before they overwrite it, streaming ones do not,
-// and leave the caches to what is drawn: twice as fast. What the caches may hold until it is drawn into is better left there.
+// and leave the caches to what is drawn: a quarter of the time. What the caches may hold until it is drawn into is left there.
 constexpr std::ptrdiff_t streamed_from = 8 << 20;  // bytes
 
 // `bytes` bytes of a pattern of 16, which is texels side by side.
@@ -73,7 +73,8 @@ void fill_row(std::byte* row, std::ptrdiff_t bytes, const std::byte* pattern, bo
         std::memset(row + at, std::to_integer<int>(pattern[0]), static_cast<std::size_t>(bytes - at));
         return;
     }
-    for (; at < bytes; at += 16) std::memcpy(row + at, pattern, static_cast<std::size_t>(std::min<std::ptrdiff_t>(16, bytes - at)));
+    for (; at + 16 <= bytes; at += 16) std::memcpy(row + at, pattern, 16);
+    std::memcpy(row + at, pattern, static_cast<std::size_t>(bytes - at));
 }
 
 template <Format format>

@@ -4,22 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <numeric>
 #include <thread>
 
 #include "pipeline/lanes.hpp"
+#include "tests/level.hpp"
 
 namespace nephroid::test {
-
-bool every_float() {
-    static const bool all = [] {
-        const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-        return level && std::strcmp(level, "all") == 0;
-    }();
-    return all;
-}
 
 const std::vector<float>& boundary_arguments() {
     static const std::vector<float> arguments = [] {
@@ -74,7 +65,7 @@ const std::vector<float>& boundary_arguments() {
 void for_each_chunk(const std::function<void(std::span<const float>)>& visit) {
     const std::vector<float>& boundaries = boundary_arguments();
     constexpr std::uint64_t chunk = 4096, all_floats = std::uint64_t{1} << 32;
-    const std::uint64_t sampled = every_float() ? all_floats : all_floats / 2048;
+    const std::uint64_t sampled = all_levels() ? all_floats : all_floats / 2048;
     const std::uint64_t boundary_chunks = boundaries.size() / chunk, chunks = boundary_chunks + sampled / chunk;
     std::atomic<std::uint64_t> next{0};
     const auto work = [&] {

@@ -10,6 +10,7 @@
 #include "arguments.hpp"
 #include "math_kernels.hpp"
 #include "pipeline/math.hpp"
+#include "tests/level.hpp"
 
 namespace nephroid {
 
@@ -135,7 +136,7 @@ TEST_CASE("lanes give the same bits as float: two arguments") {
             kernels.atan2(x.data(), y.data(), result.data(), count);
             for (std::size_t k = 0; k < count; ++k) differences.compare("atan2", isa, x[k], y[k], result[k], nephroid::atan2(x[k], y[k]));
         };
-        for (int round = every_float() ? 20'000 : 400; round-- > 0;) {
+        for (int round = all_levels() ? 20'000 : 400; round-- > 0;) {
             for (std::size_t k = 0; k < count; ++k) {
                 const std::uint64_t bits = engine();
                 x[k] = bits_float(static_cast<std::uint32_t>(bits));

@@ -11,6 +11,7 @@
 #include "oracle/random.hpp"
 #include "scene_kit.hpp"
 #include "scenes/bundled.hpp"
+#include "tests/level.hpp"
 
 using namespace nephroid;
 using namespace nephroid::oracle;
@@ -90,8 +91,7 @@ TEST_CASE("a closed box stays exactly black inside") {
     // Each of its lights for itself too, with many photons for what could leak.
     scenes::Scene scene = scenes::bundled_scene("closed-box");
     REQUIRE(scene.lights.size() == 3);
-    const bool thorough = std::getenv("NEPHROID_TEST_LEVEL") != nullptr;
-    const Result all = trace(scene, {.photons = thorough ? 100'000'000u : 300'000u, .width = 64, .height = 48});
+    const Result all = trace(scene, {.photons = test::all_levels() ? 100'000'000u : 300'000u, .width = 64, .height = 48});
     CHECK(std::all_of(all.image.begin(), all.image.end(), [](double value) { return value == 0.0; }));
     CHECK(all.emitted.value == Vec3{});
     CHECK(all.deposited.value == Vec3{});

@@ -8,16 +8,16 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <tuple>
 
+#include "tests/level.hpp"
+
 namespace test {
 
 int rounds(int usual, int many) {
-    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-    return level && std::strcmp(level, "all") == 0 ? many : usual;
+    return nephroid::test::all_levels() ? many : usual;
 }
 
 const std::vector<int>& lane_widths() {

@@ -15,7 +15,7 @@ using namespace nephroid;
 
 // ---- how much to test
 
-// `usual` rounds, or `many` where the environment variable NEPHROID_TEST_LEVEL says "all".
+// `usual` rounds, or `many` where all_levels().
 int rounds(int usual, int many);
 
 // ---- devices

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/level.hpp"
 #include "tools/picture_file.hpp"
 
 namespace nephroid::test {
@@ -36,8 +37,7 @@ void write_side_by_side(const Comparison& c, const std::string& name) {
 }  // namespace
 
 std::uint32_t photons_of_truth(std::uint32_t many) {
-    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-    return level != nullptr && std::string(level) == "all" ? many : many / 4;
+    return all_levels() ? many : many / 4;
 }
 
 Comparison compare_with_truth(Device& device, const scenes::Scene& scene, const stages::Settings& settings, std::uint64_t photons, int block) {

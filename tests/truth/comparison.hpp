@@ -5,8 +5,7 @@
 
 namespace nephroid::test {
 
-// How many photons the truth is made of: all of them where the environment variable NEPHROID_TEST_LEVEL says "all", which
-// takes minutes, else a quarter.
+// How many photons the truth is made of: all of them where all_levels(), else a quarter.
 std::uint32_t photons_of_truth(std::uint32_t many);
 
 struct Comparison {

@@ -8,6 +8,7 @@
 #include "oracle/scene_kit.hpp"
 #include "scenes/bundled.hpp"
 #include "scenes/shapes.hpp"
+#include "tests/level.hpp"
 
 namespace nephroid::test {
 
@@ -19,6 +20,7 @@ struct Case {
     const char* name;
     scenes::Scene scene;
     std::uint64_t photons;
+    bool always = false;  // whatever the level
 };
 
 scenes::Scene bundled_from(const char* name, const Vec3& eye, const Vec3& target, double fov) {
@@ -109,14 +111,15 @@ TEST_SUITE_BEGIN("reference");
 
 TEST_CASE("caustics are the oracle's within the noise that both state") {
     const Case cases[] = {
-        {"glass-sphere", scenes::bundled_scene("glass-sphere"), 1'000'000},
+        {"glass-sphere", scenes::bundled_scene("glass-sphere"), 1'000'000, true},
         {"glass-torus", scenes::bundled_scene("glass-torus"), 1'500'000},
-        {"prism, dispersive", bundled_from("prism", {0.2, 1.6, 0.6}, {0.6, 0, 0}, 1.2), 400'000},
+        {"prism, dispersive", bundled_from("prism", {0.2, 1.6, 0.6}, {0.6, 0, 0}, 1.2), 400'000, true},
         {"under water, behind a sphere", bundled_from("sphere-above-water", {0.1, -0.05, 0.2}, {0, -1, 0}, 1.2), 1'500'000},
         {"reflection on a wall", reflection_on_a_wall(), 2'000'000},
-        {"ball in haze", ball_in_haze(), 1'000'000},
+        {"ball in haze", ball_in_haze(), 1'000'000, true},
     };
     for (const Case& c : cases) {
+        if (!c.always && !all_levels()) continue;
         const std::string text(c.name);
         CAPTURE(text);
         const reference::Tracer tracer = traced(c.scene, 128, 96, c.photons);
@@ -128,19 +131,13 @@ TEST_CASE("caustics are the oracle's within the noise that both state") {
     }
 }
 
-// True where NEPHROID_TEST_LEVEL=all asks for what takes minutes.
-bool is_patient() {
-    const char* level = std::getenv("NEPHROID_TEST_LEVEL");
-    return level != nullptr && std::string(level) == "all";
-}
-
 // In few pixels: a brute-force tracer finds hardly a scattered photon for each of many.
 TEST_CASE("light that a medium scatters once is the oracle's, in haze and in a cloud") {
     for (const bool cloud : {false, true}) {
         CAPTURE(cloud);
         const scenes::Scene scene = room(cloud);
         // What is sampled from the eye is sampled once a pass.
-        const int more = is_patient() ? 10 : 1, passes = more * few_passes;
+        const int more = all_levels() ? 10 : 1, passes = more * few_passes;
         const auto photons = static_cast<std::uint64_t>(more) * 1'000'000;
         const reference::Tracer tracer = traced(scene, 44, 33, photons, passes);
         oracle::Options judge = judging(44, 33, 3 * photons, passes);
@@ -152,7 +149,7 @@ TEST_CASE("light that a medium scatters once is the oracle's, in haze and in a c
             const std::string text(what);
             CAPTURE(text);
             MESSAGE(text, std::string(cloud ? " in a cloud" : " in haze"), ": total ", 100 * a.total, " % (+- ", 100 * a.total_error, ", own ", 100 * a.own_error, "), mean squared z ", a.mean_squared_z, " over ", a.pixels, " pixels");
-            check(a, is_patient() ? 0.002 : 0.007);
+            check(a, all_levels() ? 0.002 : 0.007);
         };
         std::vector<double> scattered, scattered_error;
         for (std::size_t k = 0; k < truth.image.size(); ++k) {

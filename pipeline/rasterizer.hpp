@@ -33,6 +33,8 @@ class TileRasterizer {
     // So many pixels of a triangle wait before groups are made of them: the first were then long in memory when they are read.
     // A part, or a register, may come on top.
     static constexpr int pending_enough = 256, pending_capacity = pending_enough + std::max(lanes, part_width * part_height) + lanes;
+    // How many records before its turn one is asked for, and the depths that it will be tested against.
+    static constexpr std::ptrdiff_t records_ahead = 24, depths_ahead = 16;
     // A triangle that shows no more than this of any row, of as many as there are lanes, is thin there.
     static constexpr int thin = 12;
     // A rectangle of no more columns and rows is filled row after row, a wider one in blocks.
@@ -70,16 +72,17 @@ public:
                 draw_points(batch, entry, entry_end);
                 continue;
             }
-            constexpr std::ptrdiff_t ahead = 8;
-            const std::uint32_t* const asked_for = entry_end - std::min(ahead, entry_end - entry);
-            const std::size_t record_bytes = static_cast<std::size_t>(draw_.record_bytes);
-            const std::byte* const records = draw_.raster_records + batch.first_record * record_bytes;
+            const std::uint32_t* const asked_for = entry_end - std::min(records_ahead, entry_end - entry);
+            const bool tests_early = draw_.early_depth && draw_.raster_topology == Topology::TriangleList;
+            for (const std::uint32_t* first = entry; first < std::min(entry + records_ahead, entry_end); ++first) ask_for_record(batch.first_record + *first);
             // Both lists ascend: merge them.
             while (entry != entry_end || large != large_end) {
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
                 const std::uint32_t record = take_large ? *large++ : *entry++;
-                // A tile's records lie anywhere in their batch's.
-                if (entry < asked_for) __builtin_prefetch(records + entry[ahead] * record_bytes);
+                if (entry < asked_for) {
+                    ask_for_record(batch.first_record + entry[records_ahead]);
+                    if (tests_early) ask_for_depth(batch.first_record + entry[depths_ahead]);
+                }
                 if (only_record < 0 || record == static_cast<std::uint32_t>(only_record)) draw_record(batch.first_record + record);
             }
         }
@@ -91,6 +94,14 @@ private:
     static const RasterTarget& target_of(const DrawContext& draw, int tile) {
         const int count = draw.target_layers * draw.target_levels;
         return *(std::upper_bound(draw.targets, draw.targets + count, tile, [](int t, const RasterTarget& target) { return t < target.first_tile; }) - 1);
+    }
+
+    // A tile's records lie anywhere in their batch's.
+    void ask_for_record(std::uint32_t record) const { __builtin_prefetch(draw_.raster_records + record * static_cast<std::size_t>(draw_.record_bytes)); }
+    // What a triangle's first depth is tested against: small ones are tested before much else is done.
+    void ask_for_depth(std::uint32_t record) const {
+        const TriangleRecord& r = triangle(record);
+        if (r.target == target_index_) __builtin_prefetch(target_.depth + r.top * target_.depth_pitch + r.left * 4, 1);
     }
 
     void draw_record(std::uint32_t record) {

@@ -72,9 +72,10 @@ public:
                 draw_points(batch, entry, entry_end);
                 continue;
             }
-            const std::uint32_t* const asked_for = entry_end - std::min(records_ahead, entry_end - entry);
+            const std::ptrdiff_t asked_at_once = std::min(records_ahead, entry_end - entry);
+            for (std::ptrdiff_t k = 0; k < asked_at_once; ++k) ask_for_record(batch.first_record + entry[k]);
+            const std::uint32_t* const asked_for = entry_end - asked_at_once;
             const bool tests_early = draw_.early_depth && draw_.raster_topology == Topology::TriangleList;
-            for (const std::uint32_t* first = entry; first < std::min(entry + records_ahead, entry_end); ++first) ask_for_record(batch.first_record + *first);
             // Both lists ascend: merge them.
             while (entry != entry_end || large != large_end) {
                 const bool take_large = entry == entry_end || (large != large_end && *large < *entry);
